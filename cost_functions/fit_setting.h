@@ -1,0 +1,48 @@
+#ifndef BATTEN_COST_FUNCTIONS_FIT_SETTING_H_
+#define BATTEN_COST_FUNCTIONS_FIT_SETTING_H_
+
+#include <memory>
+#include <vector>
+
+#include "splines/bspline_basis.h"
+
+namespace batten {
+
+/// Places on the curve where a term has a residual block, with the data it compares there, grouped
+/// by span. Site s of the order is item order[s] of the arrays (item s if `order` is empty).
+struct Sites {
+  struct Group {
+    int span;
+    int begin;  // sites begin..end-1 lie in this span
+    int end;
+  };
+  int size = 0;
+  const double* parameters = nullptr;  // in the basis' domain
+  const double* points = nullptr;      // size x dimension in user units, or null
+  const double* weights = nullptr;     // >= 0, or null: all 1
+  std::vector<int> order;
+  std::vector<Group> groups;
+  std::shared_ptr<const void> storage;  // what the pointers point into, if it is not the caller's
+
+  int item(int site) const { return order.empty() ? site : order[static_cast<std::size_t>(site)]; }
+};
+
+/// Sorts items by span: one pass where parameters already are in order of their spans.
+void GroupBySpan(const BsplineBasis& basis, Sites* sites);
+
+/// What a term is told about the fit: the spline space, the data, and where the control points stand
+/// in x. Inside, data are (point - center) * scale.
+struct FitSetting {
+  const BsplineBasis* basis = nullptr;
+  int dimension = 0;
+  double center[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
+  double scale = 1.0;           // a power of two
+  int control_point_offset = 0; // P_j stands at x[control_point_offset + j * dimension]
+  const Sites* data = nullptr;  // the data points at their fixed parameters
+  /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).
+  bool use_static_sizes = true;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_COST_FUNCTIONS_FIT_SETTING_H_

@@ -1,0 +1,210 @@
+#ifndef BATTEN_COST_FUNCTIONS_FUNCTOR_FAMILY_H_
+#define BATTEN_COST_FUNCTIONS_FUNCTOR_FAMILY_H_
+
+#include <glog/logging.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cost_functions/functor_ceres.h"
+#include "cost_functions/functor_kernel.h"
+#include "cost_functions/term.h"
+
+namespace batten {
+
+/// Spreads one residual functor over its sites. A functor is a small copyable struct:
+///
+///   static TermInfo Info();                        // name, summary, source, options, affine
+///   static constexpr bool kAffine;                 // as TermInfo::affine
+///   static constexpr int kDerivatives;             // highest derivative of C it asks for
+///   static constexpr int NumResiduals(int dimension);   // at most 16
+///   explicit Functor(const OptionValues& options);
+///   std::shared_ptr<const Sites> MakeSites(const FitSetting& setting) const;
+///   template <typename SiteType, typename T>
+///   bool operator()(const SiteType& site, const T* const* control_points, T* residuals) const;
+///
+/// control_points[j][c] is coordinate c of the span's j-th control point. False means that the
+/// residual has no value there.
+template <typename Functor>
+class FunctorFamily final : public BlockFamily, private RowSource {
+ public:
+  FunctorFamily(const FitSetting& setting, Functor functor, double weight,
+                std::shared_ptr<const ceres::LossFunction> loss)
+      : BlockFamily(weight, std::move(loss)), setting_(setting), functor_(std::move(functor)),
+        sites_(functor_.MakeSites(setting)) {
+    if constexpr (Functor::kAffine) rows_are_alike_ = RowsAreAlike();
+  }
+
+  int size() const override { return sites_->size; }
+  int num_residuals() const override { return Functor::NumResiduals(setting_.dimension); }
+
+  void Bind(const Eigen::VectorXd&, int block, std::vector<int>* offsets,
+            std::vector<int>* sizes) const override {
+    const BsplineBasis& basis = *setting_.basis;
+    const int distinct = std::min(basis.order(), basis.num_control_points());
+    const int first = SpanOf(block) - basis.degree();
+    offsets->resize(static_cast<std::size_t>(distinct));
+    sizes->assign(static_cast<std::size_t>(distinct), setting_.dimension);
+    for (int j = 0; j < distinct; ++j) {
+      (*offsets)[static_cast<std::size_t>(j)] =
+          setting_.control_point_offset + basis.ControlPointIndex(first + j) * setting_.dimension;
+    }
+  }
+
+  const RowSource* rows() const override {
+    return rows_are_alike_ && loss() == nullptr ? this : nullptr;
+  }
+
+  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(int block) const override {
+    return WithKernel([&](const auto& kernel) {
+      return MakeFunctorCostFunction(functor_, kernel.MakeSite(block, SpanOf(block)), *setting_.basis,
+                                     setting_.dimension);
+    });
+  }
+
+ private:
+  /// Calls body with the kernel of the sizes at hand: compiled for the common ones.
+  template <typename Body>
+  auto WithKernel(Body body) const {
+    const int p = setting_.basis->degree();
+    const int d = setting_.dimension;
+    if (setting_.use_static_sizes) {
+      if (p == 3 && d == 1) return body(FunctorKernel<Functor, 3, 1>(setting_, *sites_, functor_));
+      if (p == 3 && d == 2) return body(FunctorKernel<Functor, 3, 2>(setting_, *sites_, functor_));
+      if (p == 3 && d == 3) return body(FunctorKernel<Functor, 3, 3>(setting_, *sites_, functor_));
+      if (p == 2 && d == 2) return body(FunctorKernel<Functor, 2, 2>(setting_, *sites_, functor_));
+      if (p == 5 && d == 2) return body(FunctorKernel<Functor, 5, 2>(setting_, *sites_, functor_));
+    }
+    return body(FunctorKernel<Functor, -1, -1>(setting_, *sites_, functor_));
+  }
+
+  int SpanOf(int block) const {
+    const auto& groups = sites_->groups;
+    return std::upper_bound(groups.begin(), groups.end(), block,
+                            [](int site, const Sites::Group& g) { return site < g.end; })->span;
+  }
+
+  bool DoEvaluate(const Eigen::VectorXd& x, int begin, int end, double* energy,
+                  Eigen::VectorXd* gradient) const override {
+    return WithKernel([&](const auto& kernel) {
+      return gradient == nullptr
+                 ? kernel.Energy(x.data(), begin, end, weight(), loss(), energy)
+                 : kernel.EnergyAndGradient(x.data(), begin, end, weight(), loss(), energy,
+                                            gradient->data());
+    });
+  }
+
+  bool DoResiduals(const Eigen::VectorXd& x, Eigen::VectorXd* residuals) const override {
+    residuals->resize(static_cast<Eigen::Index>(size()) * num_residuals());
+    return WithKernel([&](const auto& kernel) {
+      return kernel.ForEachSite(
+          0, size(), [](const auto&) {},
+          [&](const auto& site, int s, const auto& window) {
+            return kernel.PlainResiduals(site, window, x.data(),
+                                         residuals->data() + s * num_residuals());
+          },
+          [](const auto&) {});
+    });
+  }
+
+  bool DoJacobian(const Eigen::VectorXd& x, int first_row,
+                  std::vector<Eigen::Triplet<double>>* entries) const override {
+    return WithKernel([&](const auto& kernel) {
+      std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
+      std::vector<double> jacobian(residuals.size() * static_cast<std::size_t>(kernel.num_variables()));
+      return kernel.ForEachSite(
+          0, size(), [](const auto&) {},
+          [&](const auto& site, int s, const auto& window) {
+            if (!kernel.ResidualsAndJacobian(site, window, x.data(), residuals.data(),
+                                             jacobian.data())) {
+              return false;
+            }
+            for (std::size_t e = 0; e < jacobian.size(); ++e) {
+              const int row = static_cast<int>(e) / kernel.num_variables();
+              const int v = static_cast<int>(e) % kernel.num_variables();
+              entries->emplace_back(
+                  first_row + s * num_residuals() + row,
+                  window.offset[v / kernel.dimension()] + v % kernel.dimension(), jacobian[e]);
+            }
+            return true;
+          },
+          [](const auto&) {});
+    });
+  }
+
+  bool DoAddHessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& direction,
+                         Eigen::VectorXd* product) const override {
+    return WithKernel([&](const auto& kernel) {
+      return kernel.AddHessianTimes(x.data(), direction.data(), weight(), loss(), product->data());
+    });
+  }
+
+  RowShape shape() const override {
+    RowShape shape;
+    shape.num_rows = size();
+    shape.num_columns = setting_.basis->num_control_points();
+    shape.width = setting_.basis->order();
+    shape.dimension = setting_.dimension;
+    shape.cyclic = setting_.basis->periodic();
+    return shape;
+  }
+  void Stream(RowConsumer* consumer) const override {
+    if constexpr (Functor::kAffine) {
+      WithKernel([&](const auto& kernel) {
+        kernel.StreamRows(std::sqrt(weight()), consumer);
+        return true;
+      });
+    }
+  }
+
+  /// Whether the residual's derivative really is one row for all coordinates: tried on the first and
+  /// the last block. A functor that claims it wrongly is evaluated uncompiled.
+  bool RowsAreAlike() const {
+    const int d = setting_.dimension;
+    if (num_residuals() != d || size() == 0) return false;
+    return WithKernel([&](const auto& kernel) {
+      const int num_variables = kernel.num_variables();
+      std::vector<double> residuals(static_cast<std::size_t>(d));
+      std::vector<double> jacobian(static_cast<std::size_t>(d * num_variables));
+      const Eigen::VectorXd x = Eigen::VectorXd::Zero(
+          setting_.control_point_offset + setting_.basis->num_control_points() * d);
+      for (const int block : {0, size() - 1}) {
+        const int span = SpanOf(block);
+        if (!kernel.ResidualsAndJacobian(kernel.MakeSite(block, span), kernel.MakeWindow(span),
+                                         x.data(), residuals.data(), jacobian.data())) {
+          return false;
+        }
+        for (int r = 0; r < d; ++r) {
+          for (int v = 0; v < num_variables; ++v) {
+            const double alike = v % d == r ? jacobian[static_cast<std::size_t>(v - r)] : 0.0;
+            if (jacobian[static_cast<std::size_t>(r * num_variables + v)] != alike) return false;
+          }
+        }
+      }
+      return true;
+    });
+  }
+
+  FitSetting setting_;
+  Functor functor_;
+  std::shared_ptr<const Sites> sites_;
+  bool rows_are_alike_ = false;
+};
+
+/// Registers a functor as a term.
+template <typename Functor>
+class FunctorTerm final : public Term {
+ public:
+  TermInfo Info() const override { return Functor::Info(); }
+  std::unique_ptr<BlockFamily> MakeFamily(const FitSetting& setting, const OptionValues& options,
+                                          std::string* /*error*/) const override {
+    return std::make_unique<FunctorFamily<Functor>>(setting, Functor(options),
+                                                    options.Real("weight"), MakeLoss(options));
+  }
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_COST_FUNCTIONS_FUNCTOR_FAMILY_H_

@@ -1,0 +1,51 @@
+#ifndef BATTEN_EXPERIMENTS_AUDIT_H_
+#define BATTEN_EXPERIMENTS_AUDIT_H_
+
+#include <string>
+#include <vector>
+
+namespace batten {
+
+/// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code with
+/// the folder splines/.
+struct AuditedFit {
+  int degree = 0;
+  bool periodic = false;
+  int dimension = 0;
+  std::vector<double> knots;
+  std::vector<double> control_points;  // n x d, row-major
+  std::vector<double> points;          // m x d
+  std::vector<double> parameters;      // m
+  std::vector<double> weights;         // m, or empty: all 1
+};
+
+/// E, g and distances of a fit with the interpolation term, recomputed by de Boor's recursion in
+/// long double, point by point.
+struct AuditReport {
+  double energy = 0.0;         // sum of w |C(t) - Q|^2
+  double gradient_norm = 0.0;  // of E with respect to the control points
+  double gradient_floor = 0.0; // what rounding of the double control points alone is worth in |g|
+  double rms_distance = 0.0;   // over the points, at their parameters, not weighted
+  double max_distance = 0.0;
+};
+AuditReport Audit(const AuditedFit& fit);
+
+/// What a run claims about its end.
+struct Claim {
+  double energy = 0.0;
+  double gradient_norm = 0.0;
+  bool minimum = false;            // it says it reached gradient_target or the rounding floor
+  double gradient_target = 0.0;
+  double start_energy = 0.0;
+};
+
+struct Verdict {
+  bool holds = false;
+  std::string failure;  // one sentence: what was claimed, what was found
+};
+/// Compares claim and report within what rounding allows; tolerances are stated in the .cc.
+Verdict Verify(const Claim& claim, const AuditReport& report);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_AUDIT_H_

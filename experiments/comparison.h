@@ -1,0 +1,56 @@
+#ifndef BATTEN_EXPERIMENTS_COMPARISON_H_
+#define BATTEN_EXPERIMENTS_COMPARISON_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/fit_report.h"
+#include "experiments/run.h"
+#include "problems/catalogue.h"
+
+namespace batten {
+
+struct ComparisonSpec {
+  std::vector<std::string> problems;   // catalogue names or problem files
+  std::vector<NameSpec> solvers;
+  RunSpec run;
+  int repetitions = 5;                 // >= 1; interleaved: all solvers once, then all again, ...
+  /// One line of progress at a time: "rhino: 3 / 40 lbfgs"; may be empty.
+  std::function<void(int done, int total, const std::string& running)> progress;
+};
+
+/// One problem x solver: a row of the table and of cells.jsonl (schema in docs/formats.md).
+struct ComparisonRow {
+  std::string problem;
+  std::string solver;                  // as written, NAME/OPTION=VALUE
+  RunResult run;                       // of the first repetition: trace and end
+  double setup_seconds = 0.0;          // medians over the repetitions
+  double solve_seconds = 0.0;
+  double seconds = 0.0;
+  double times_cholesky = 0.0;         // seconds / seconds of banded_cholesky on this problem; NaN
+  double gap = 0.0;                    // ||A (P - P*)||^2 / (E(start) - E*); NaN where not quadratic
+  /// Largest distance of a control point from the direct answer's, over the data's size where the
+  /// minimum is unique; else largest |A (P - P*)| of a row over the data's size.
+  double distance_to_direct = 0.0;
+  bool unique_minimum = true;
+  FitReport report;
+};
+
+struct ComparisonResult {
+  ComparisonSpec spec;
+  std::vector<ComparisonRow> rows;     // problem by problem, solvers in the order given
+  bool interrupted = false;
+  /// Cross-check: rows that claim a minimum (race mode) yet are farther from the direct answer than
+  /// the tolerance derived from |g| and the condition: one sentence each.
+  std::vector<std::string> disagreements;
+};
+
+/// Runs everything. banded_qr and banded_cholesky are run as references even if not asked for (then
+/// without a row). False with one sentence in `error` for unknown names or unreadable problems, found
+/// before anything runs.
+bool Compare(const ComparisonSpec& spec, ComparisonResult* result, std::string* error);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_COMPARISON_H_

@@ -1,0 +1,38 @@
+#ifndef BATTEN_EXPERIMENTS_FIT_REPORT_H_
+#define BATTEN_EXPERIMENTS_FIT_REPORT_H_
+
+#include <string>
+
+#include "experiments/audit.h"
+#include "experiments/run.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+/// A run's end measured: distances, foot points and audit, all off the clock.
+struct FitReport {
+  double rms = 0.0;                    // distances at the parameters
+  double max = 0.0;
+  double rms_orthogonal = 0.0;         // at plain closest points (splines/closest_point.h)
+  double max_orthogonal = 0.0;
+  double energy_at_foot_points = 0.0;  // sum of w |C(foot) - Q|^2
+  AuditReport audit;
+  Verdict verdict;                     // of the run's claim against the audit
+};
+FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec& spec);
+
+/// The claim of a run, for Verify.
+Claim ClaimOf(const RunResult& run, const RunSpec& spec);
+
+/// The text of fit.json ("format": "batten.fit/1", docs/formats.md). Never NaN or infinity: null.
+std::string FitJson(const Problem& problem, const RunResult& run, const RunSpec& spec,
+                    const FitReport& report);
+/// Streams the same text to `stream` without holding it: for millions of points.
+void WriteFitJson(const Problem& problem, const RunResult& run, const RunSpec& spec,
+                  const FitReport& report, std::ostream* stream);
+/// JSON lines {"iteration", "control_points", "parameters"}.
+std::string IteratesJsonLines(const Problem& problem, const RunResult& run);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_FIT_REPORT_H_

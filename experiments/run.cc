@@ -1,0 +1,70 @@
+#include "experiments/run.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "experiments/run_control.h"
+#include "solvers/solver_registry.h"
+
+namespace batten {
+namespace {
+
+// The interrupt handler sets it: lock-free, hence safe there.
+std::atomic<bool> interrupt_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Geometric mean of the gradient's factor per iteration over the last third of the iterations that
+/// are well above the rounding floor.
+double ObservedRate(const RunResult& result) {
+  constexpr double kAboveFloor = 100.0;
+  constexpr int kFewest = 6;
+  int last = -1;
+  for (const TraceRow& row : result.trace) {
+    if (!(row.gradient_norm > kAboveFloor * result.gradient_floor)) break;
+    last = row.iteration;
+  }
+  if (last < kFewest) return std::numeric_limits<double>::quiet_NaN();
+  const int first = last - last / 3;
+  const double ratio = result.trace[static_cast<std::size_t>(last)].gradient_norm /
+                       result.trace[static_cast<std::size_t>(first)].gradient_norm;
+  return std::pow(ratio, 1.0 / (last - first));
+}
+
+}  // namespace
+
+const char* ToString(Mode mode) { return mode == Mode::kRace ? "race" : "native"; }
+
+bool FromString(const std::string& text, Mode* mode) {
+  if (text != "race" && text != "native") return false;
+  *mode = text == "race" ? Mode::kRace : Mode::kNative;
+  return true;
+}
+
+void RequestInterrupt() { interrupt_requested = true; }
+bool InterruptRequested() { return interrupt_requested; }
+
+bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
+         RunResult* result, std::string* error) {
+  *result = RunResult();
+  result->solver = solver_name;
+  OptionValues options;
+  const std::unique_ptr<Solver> solver =
+      SolverRegistry::Global().Make(solver_name, &options, error);
+  if (solver == nullptr) return false;
+  result->options = options.ToText();
+
+  RunControl control(problem, spec, solver->Info().native_rule, result);
+  // Made before the clock starts: nothing in it is evaluated or compiled before the solver asks.
+  Objective objective(&problem, &control, Objective::Options{spec.compile});
+  result->skipped = solver->WhyUnsupported(objective);
+  if (!result->skipped.empty()) return true;
+  Eigen::VectorXd x = objective.start();
+  control.Begin();
+  result->outcome = solver->Minimize(&objective, &control, &x);
+  control.Finish(x);
+  result->observed_rate = ObservedRate(*result);
+  return true;
+}
+
+}  // namespace batten

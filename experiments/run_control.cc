@@ -1,0 +1,198 @@
+#include "experiments/run_control.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <limits>
+
+#include "problems/fit_problem.h"
+
+namespace batten {
+namespace {
+
+double WallNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double CpuNow() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// FNV-1a over the bits of x, a word at a time.
+std::uint64_t HashPoint(const Eigen::VectorXd& x) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &x[i], sizeof(bits));
+    hash = (hash ^ bits) * 1099511628211ULL;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+}  // namespace
+
+void Stopwatch::Resume() {
+  running_ = true;
+  cpu_started_ = CpuNow();
+  started_ = WallNow();
+}
+
+void Stopwatch::Pause() {
+  if (!running_) return;
+  seconds_ += WallNow() - started_;
+  cpu_seconds_ += CpuNow() - cpu_started_;
+  running_ = false;
+}
+
+double Stopwatch::SecondsNow() const { return seconds_ + (running_ ? WallNow() - started_ : 0.0); }
+
+RunControl::RunControl(const Problem& problem, const RunSpec& spec, NativeRule rule,
+                       RunResult* result)
+    : problem_(problem), spec_(spec), rule_(rule), result_(result),
+      reporter_(&problem, nullptr, Objective::Options{spec.compile}) {}
+
+bool RunControl::Allow(Evaluation kind, const Eigen::VectorXd* x) {
+  if (stop_reason_ != StopReason::kNotRun) return false;
+  if (InterruptRequested()) {
+    stop_reason_ = StopReason::kInterrupted;
+  } else if (watch_.SecondsNow() > spec_.max_seconds) {
+    stop_reason_ = StopReason::kTimeLimit;
+  }
+  if (stop_reason_ != StopReason::kNotRun) return false;
+  Counts& counts = result_->counts;
+  switch (kind) {
+    case Evaluation::kEnergy: ++counts.energy_calls; break;
+    case Evaluation::kGradient: ++counts.gradient_calls; break;
+    case Evaluation::kJacobian: ++counts.jacobian_calls; break;
+    case Evaluation::kProduct: ++counts.products; break;
+    case Evaluation::kProjection: ++counts.projections; break;
+  }
+  if (x != nullptr && kind != Evaluation::kProduct) {
+    OffTheClock([this, x] { points_.insert(HashPoint(*x)); });
+  }
+  return true;
+}
+
+void RunControl::OffTheClock(const std::function<void()>& work) {
+  watch_.Pause();
+  work();
+  watch_.Resume();
+}
+
+void RunControl::Note(const std::string& name, const std::string& value) {
+  result_->notes.emplace_back(name, value);
+}
+
+Status RunControl::Iterate(const Eigen::VectorXd& x) {
+  watch_.Pause();
+  ++iteration_;
+  Book(x);
+  if (stop_reason_ == StopReason::kNotRun) stop_reason_ = CheckStop(row_);
+  if (stop_reason_ == StopReason::kNotRun) stop_reason_ = CheckConverged(row_, x);
+  watch_.Resume();
+  return stop_reason_ == StopReason::kNotRun ? Status::kOk : Status::kStop;
+}
+
+void RunControl::Book(const Eigen::VectorXd& x) {
+  if (iteration_ == 0) result_->setup_seconds = watch_.seconds();
+  const Units& units = problem_.units();
+  double energy = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd gradient;
+  const bool finite =
+      x.allFinite() && reporter_.EnergyAndGradient(x, &energy, &gradient) == Status::kOk;
+  row_.iteration = iteration_;
+  row_.counts = result_->counts;
+  row_.counts.distinct_points = static_cast<long>(points_.size());
+  row_.seconds = watch_.seconds();
+  row_.cpu_seconds = watch_.cpu_seconds();
+  row_.energy = energy * units.energy;
+  row_.gradient_norm =
+      finite ? gradient.norm() * units.gradient : std::numeric_limits<double>::quiet_NaN();
+  row_.step_norm = last_x_.size() == x.size() ? StepNorm(x) * units.length : 0.0;
+  row_.term_energies.clear();
+  if (spec_.keep_trace && problem_.terms().size() > 1) {
+    row_.term_energies = reporter_.TermEnergies(x);
+    for (double& part : row_.term_energies) part *= units.energy;
+  }
+  if (iteration_ == 0) {
+    result_->start_energy = row_.energy;
+    result_->start_gradient_norm = row_.gradient_norm;
+    result_->gradient_floor = reporter_.GradientRoundingFloor(x) * units.gradient;
+  }
+  last_x_ = x;
+  if (spec_.keep_trace) result_->trace.push_back(row_);
+  if (spec_.keep_iterates) result_->iterates.push_back({iteration_, reporter_.Expand(x)});
+  if (spec_.progress) spec_.progress(row_);
+}
+
+double RunControl::StepNorm(const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd before = reporter_.Expand(last_x_);
+  const Eigen::VectorXd now = reporter_.Expand(x);
+  if (problem_.curve_fit() == nullptr) return (now - before).cwiseAbs().maxCoeff();
+  const int d = problem_.curve_fit()->dimension();
+  double largest = 0.0;
+  for (Eigen::Index j = 0; j + d <= now.size(); j += d) {
+    largest = std::max(largest, (now.segment(j, d) - before.segment(j, d)).norm());
+  }
+  return largest;
+}
+
+StopReason RunControl::CheckStop(const TraceRow& row) {
+  if (InterruptRequested()) return StopReason::kInterrupted;
+  if (!std::isfinite(row.energy) || !std::isfinite(row.gradient_norm)) {
+    return iteration_ == 0 ? StopReason::kNumericalFailure : StopReason::kDiverged;
+  }
+  // A method that converges may rise at first, but not by ten digits.
+  constexpr double kDiverged = 1e10;
+  if (row.gradient_norm > kDiverged * result_->start_gradient_norm &&
+      row.gradient_norm > kDiverged * result_->gradient_floor) {
+    return StopReason::kDiverged;
+  }
+  return StopReason::kNotRun;
+}
+
+StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd& x) {
+  if (rule_ == NativeRule::kDirect) return StopReason::kNotRun;
+  if (spec_.mode == Mode::kRace) {
+    if (row.gradient_norm <= spec_.gradient_tolerance * result_->start_gradient_norm) {
+      return StopReason::kGradientSmall;
+    }
+  } else if (rule_ == NativeRule::kStep) {
+    if (iteration_ > 0 && row.step_norm < spec_.native_step) return StopReason::kStepSmall;
+  } else if (row.gradient_norm < spec_.native_gradient) {
+    return StopReason::kGradientSmall;
+  }
+  // The floor belongs to the point; near the one of the start it is looked at again.
+  constexpr double kNear = 16.0;
+  if (row.gradient_norm <= kNear * result_->gradient_floor) {
+    result_->gradient_floor = reporter_.GradientRoundingFloor(x) * problem_.units().gradient;
+    if (row.gradient_norm <= result_->gradient_floor) return StopReason::kRoundingFloor;
+  }
+  if (iteration_ >= spec_.max_iterations) return StopReason::kIterationLimit;
+  if (watch_.seconds() > spec_.max_seconds) return StopReason::kTimeLimit;
+  return StopReason::kNotRun;
+}
+
+void RunControl::Finish(const Eigen::VectorXd& x) {
+  watch_.Pause();
+  const Units& units = problem_.units();
+  double energy = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd gradient;
+  const bool finite =
+      x.allFinite() && reporter_.EnergyAndGradient(x, &energy, &gradient) == Status::kOk;
+  result_->x = reporter_.Expand(x);
+  result_->energy = energy * units.energy;
+  result_->gradient_norm =
+      finite ? gradient.norm() * units.gradient : std::numeric_limits<double>::quiet_NaN();
+  if (finite) result_->gradient_floor = reporter_.GradientRoundingFloor(x) * units.gradient;
+  result_->iterations = std::max(iteration_, 0);
+  result_->counts.distinct_points = static_cast<long>(points_.size());
+  result_->seconds = watch_.seconds();
+  result_->cpu_seconds = watch_.cpu_seconds();
+}
+
+}  // namespace batten

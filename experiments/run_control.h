@@ -1,0 +1,69 @@
+#ifndef BATTEN_EXPERIMENTS_RUN_CONTROL_H_
+#define BATTEN_EXPERIMENTS_RUN_CONTROL_H_
+
+#include <unordered_set>
+
+#include "experiments/run.h"
+#include "problems/evaluation_monitor.h"
+#include "solvers/run_context.h"
+
+namespace batten {
+
+/// Wall and CPU time (of the whole process, so that a solver's own threads count), while it runs.
+class Stopwatch {
+ public:
+  void Resume();
+  void Pause();
+  double seconds() const { return seconds_; }          ///< Up to the last Pause.
+  double cpu_seconds() const { return cpu_seconds_; }
+  double SecondsNow() const;                           ///< Also while running.
+
+ private:
+  bool running_ = false;
+  double seconds_ = 0.0;
+  double cpu_seconds_ = 0.0;
+  double started_ = 0.0;
+  double cpu_started_ = 0.0;
+};
+
+/// Stands between one solver and its objective: counts what is evaluated, keeps the clocks, which
+/// stand still while it books or evaluates for the trace, and applies the stop rule.
+class RunControl final : public EvaluationMonitor, public RunContext {
+ public:
+  /// `problem` and `result` must outlive this; `rule` is the solver's native one.
+  RunControl(const Problem& problem, const RunSpec& spec, NativeRule rule, RunResult* result);
+
+  void Begin() { watch_.Resume(); }
+  /// Stops the clocks and writes counts, times and the end's energy and gradient to the result.
+  void Finish(const Eigen::VectorXd& x);
+
+  bool Allow(Evaluation kind, const Eigen::VectorXd* x) override;
+  Status Iterate(const Eigen::VectorXd& x) override;
+  StopReason stop_reason() const override { return stop_reason_; }
+  void Note(const std::string& name, const std::string& value) override;
+  void OffTheClock(const std::function<void()>& work) override;
+  std::uint64_t seed() const override { return spec_.seed; }
+  int threads() const override { return spec_.threads; }
+
+ private:
+  void Book(const Eigen::VectorXd& x);
+  StopReason CheckStop(const TraceRow& row);
+  StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
+  double StepNorm(const Eigen::VectorXd& x) const;
+
+  const Problem& problem_;
+  const RunSpec& spec_;
+  NativeRule rule_;
+  RunResult* result_;
+  Objective reporter_;  // its own, with no monitor: what it evaluates is not counted
+  Stopwatch watch_;
+  StopReason stop_reason_ = StopReason::kNotRun;
+  std::unordered_set<std::uint64_t> points_;
+  Eigen::VectorXd last_x_;
+  TraceRow row_;
+  int iteration_ = -1;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_RUN_CONTROL_H_

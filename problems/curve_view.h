@@ -1,0 +1,58 @@
+#ifndef BATTEN_PROBLEMS_CURVE_VIEW_H_
+#define BATTEN_PROBLEMS_CURVE_VIEW_H_
+
+#include <memory>
+#include <vector>
+
+#include "problems/evaluation_monitor.h"
+#include "problems/problem.h"
+#include "splines/banded_rows.h"
+#include "splines/normal_band.h"
+
+namespace batten {
+
+/// A problem all of whose terms are compiled rows, as geometric methods see it:
+/// E(P) = ||A P - Q||^2 in n unknown points P of dimension d (x read row-major; after elimination of
+/// constraints, A and Q are those of the points that stay). Products are counted.
+class CurveView {
+ public:
+  /// Null if some term has no rows, or constraints treat coordinates differently.
+  static std::unique_ptr<CurveView> Make(const Problem& problem, EvaluationMonitor* monitor);
+
+  int num_points() const { return shape_.num_columns; }  // n
+  int dimension() const { return shape_.dimension; }
+  int num_rows() const { return shape_.num_rows; }       // m
+  const RowShape& shape() const { return shape_; }
+
+  /// The rows as they come from the functors; streaming them costs their evaluation, keeps nothing.
+  const RowSource& row_source() const;
+  /// The rows in memory, compiled at the first call.
+  const BandedRows& rows() const;
+  /// A'A and A'Q, summed at the first call in one stream over the rows.
+  const NormalBand& normal_band() const;
+
+  /// residuals = Q - A P, m x d in row order. Counts one product.
+  Status Residuals(const Eigen::VectorXd& x, Points* residuals);
+  /// product = A'R. Counts one product.
+  Status TransposedProduct(const Points& r, Eigen::VectorXd* product);
+  /// product = N v, N = A'A. Counts one product.
+  Status NormalProduct(const Eigen::VectorXd& v, Eigen::VectorXd* product);
+  /// residual = A'(Q - A P), from the normal band. Counts one product.
+  Status NormalResidual(const Eigen::VectorXd& x, Eigen::VectorXd* residual);
+
+ private:
+  CurveView(RowShape shape, EvaluationMonitor* monitor) : shape_(shape), monitor_(monitor) {}
+  bool Allow(const Eigen::VectorXd* x) {
+    return monitor_ == nullptr || monitor_->Allow(Evaluation::kProduct, x);
+  }
+
+  RowShape shape_;
+  EvaluationMonitor* monitor_;
+  std::vector<const RowSource*> sources_;
+  mutable std::unique_ptr<const BandedRows> rows_;
+  mutable std::unique_ptr<const NormalBand> band_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_PROBLEMS_CURVE_VIEW_H_

@@ -1,0 +1,202 @@
+#include "problems/fit_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace batten {
+
+Points CurveFit::ControlPoints(const Eigen::VectorXd& x) const {
+  const int n = basis_->num_control_points();
+  Points points(n, dimension());
+  for (int j = 0; j < n; ++j) {
+    for (int c = 0; c < dimension(); ++c) {
+      points(j, c) = x[static_cast<Eigen::Index>(j) * dimension() + c] / setting_.scale +
+                     setting_.center[c];
+    }
+  }
+  return points;
+}
+
+Eigen::VectorXd CurveFit::Variables(const Points& control_points) const {
+  Eigen::VectorXd x(control_points.size());
+  for (Eigen::Index j = 0; j < control_points.rows(); ++j) {
+    for (int c = 0; c < dimension(); ++c) {
+      x[j * dimension() + c] = (control_points(j, c) - setting_.center[c]) * setting_.scale;
+    }
+  }
+  return x;
+}
+
+BsplineCurve CurveFit::Curve(const Eigen::VectorXd& x) const {
+  return BsplineCurve(*basis_, ControlPoints(x));
+}
+
+bool CurveFit::ChooseParameters(std::string* error) {
+  const auto m = data_.points.rows();
+  if (m < 2) {
+    *error = "found " + std::to_string(m) + " data point; a fit needs at least 2";
+    return false;
+  }
+  if (spec_.parameters.has_value()) {
+    const auto parameters = Parameterize(*spec_.parameters, spec_.closed, data_.points, error);
+    if (!parameters.has_value()) return false;
+    parameters_ = *parameters;
+    return true;
+  }
+  if (!data_.parameters.has_value()) {
+    *error = "parameters are to be given, but the data have no column t";
+    return false;
+  }
+  parameters_ = *data_.parameters;
+  if (spec_.domain.has_value()) {
+    domain_ = *spec_.domain;
+  } else if (!spec_.closed) {
+    domain_ = {parameters_.minCoeff(), parameters_.maxCoeff()};
+  }
+  if (!(domain_.first < domain_.second) || !std::isfinite(domain_.second - domain_.first)) {
+    *error = "the parameters' domain is empty: it goes from " + NumberText(domain_.first) + " to " +
+             NumberText(domain_.second);
+    return false;
+  }
+  return true;
+}
+
+bool CurveFit::ChooseKnots(std::string* error) {
+  const int lowest = spec_.closed ? 1 : spec_.degree + 1;
+  if (spec_.degree < 1 || spec_.degree > kMaxDegree) {
+    *error = "degree is " + std::to_string(spec_.degree) + "; allowed: 1 to " +
+             std::to_string(kMaxDegree);
+    return false;
+  }
+  std::vector<double> knots = spec_.given_knots;
+  if (knots.empty()) {
+    if (spec_.control_points < lowest || spec_.control_points > kMaxControlPoints) {
+      *error = "control_points is " + std::to_string(spec_.control_points) + "; allowed: " +
+               std::to_string(lowest) + " to " + std::to_string(kMaxControlPoints) +
+               (spec_.closed ? "" : " (degree + 1 or more for an open curve)");
+      return false;
+    }
+    const EndKnots ends = spec_.closed ? EndKnots::kPeriodic : spec_.ends;
+    if (spec_.knots == KnotRule::kUniform) {
+      knots = UniformKnots(spec_.degree, spec_.control_points, ends, domain_.first, domain_.second);
+    } else {
+      Eigen::VectorXd sorted = parameters_;
+      std::sort(sorted.data(), sorted.data() + sorted.size());
+      knots = AveragedKnots(spec_.degree, spec_.control_points, ends, domain_.first, domain_.second,
+                            sorted, error);
+      if (knots.empty()) return false;
+    }
+  }
+  basis_ = BsplineBasis::Make(spec_.degree, spec_.closed, std::move(knots), error);
+  if (!basis_.has_value()) return false;
+  if (spec_.control_points != 0 && spec_.control_points != basis_->num_control_points()) {
+    *error = "control_points is " + std::to_string(spec_.control_points) + ", but the given knots make " +
+             std::to_string(basis_->num_control_points());
+    return false;
+  }
+  spec_.control_points = basis_->num_control_points();
+  for (Eigen::Index i = 0; i < parameters_.size(); ++i) {
+    const double t = parameters_[i];
+    if (!spec_.closed && (t < basis_->domain_begin() || t > basis_->domain_end())) {
+      *error = "parameter " + NumberText(t) + " of data point " + std::to_string(i + 1) +
+               " is outside the domain; allowed: " + NumberText(basis_->domain_begin()) + " to " +
+               NumberText(basis_->domain_end());
+      return false;
+    }
+    parameters_[i] = basis_->Wrap(t);
+  }
+  return true;
+}
+
+void CurveFit::Scale() {
+  const Eigen::RowVectorXd low = data_.points.colwise().minCoeff();
+  const Eigen::RowVectorXd high = data_.points.colwise().maxCoeff();
+  const double side = (high - low).maxCoeff();
+  setting_.dimension = dimension();
+  size_ = side > 0.0 ? side : 1.0;
+  // A power of two no smaller than the longest side: dividing by it rounds nothing.
+  setting_.scale = std::exp2(-std::ceil(std::log2(size_)));
+  for (int c = 0; c < dimension(); ++c) setting_.center[c] = low[c] + 0.5 * (high[c] - low[c]);
+}
+
+/// Each control point starts on the polyline through the data in the order of their parameters, at
+/// the Greville abscissa of its basis function.
+Points CurveFit::StartPoints() const {
+  const int n = basis_->num_control_points();
+  Points start(n, dimension());
+  if (spec_.start == "centroid") {
+    start.rowwise() = data_.points.colwise().mean();
+    return start;
+  }
+  const auto m = static_cast<int>(parameters_.size());
+  std::vector<int> order(static_cast<std::size_t>(m));
+  std::iota(order.begin(), order.end(), 0);
+  const auto before = [this](int a, int b) { return parameters_[a] < parameters_[b]; };
+  if (!std::is_sorted(order.begin(), order.end(), before)) {
+    std::stable_sort(order.begin(), order.end(), before);
+  }
+  const double period = basis_->domain_length();
+  for (int j = 0; j < n; ++j) {
+    const double t = basis_->Greville(j);
+    const auto next = static_cast<int>(
+        std::upper_bound(order.begin(), order.end(), t,
+                         [this](double value, int i) { return value < parameters_[i]; }) -
+        order.begin());
+    int left = next - 1;
+    int right = next;
+    double shift_left = 0.0;
+    double shift_right = 0.0;
+    if (spec_.closed) {
+      if (left < 0) left = m - 1, shift_left = -period;
+      if (right == m) right = 0, shift_right = period;
+    } else {
+      left = std::max(left, 0);
+      right = std::min(right, m - 1);
+    }
+    const int a = order[static_cast<std::size_t>(left)];
+    const int b = order[static_cast<std::size_t>(right)];
+    const double begin = parameters_[a] + shift_left;
+    const double length = parameters_[b] + shift_right - begin;
+    const double part = length > 0.0 ? (t - begin) / length : 0.0;
+    start.row(j) = data_.points.row(a);
+    // Exactly the data point where the abscissa hits its parameter.
+    if (part > 0.0) start.row(j) += part * (data_.points.row(b) - data_.points.row(a));
+  }
+  return start;
+}
+
+std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
+  std::unique_ptr<CurveFit> fit(new CurveFit(std::move(data), std::move(spec)));
+  if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error)) return nullptr;
+  if (fit->spec_.start != "data" && fit->spec_.start != "centroid") {
+    *error = "start is " + fit->spec_.start + "; allowed: data, centroid";
+    return nullptr;
+  }
+  if (fit->spec_.terms.empty()) fit->spec_.terms.push_back({"interpolation", {}, nullptr});
+  fit->Scale();
+  fit->sites_.size = static_cast<int>(fit->parameters_.size());
+  fit->sites_.parameters = fit->parameters_.data();
+  fit->sites_.points = fit->data_.points.data();
+  fit->sites_.weights = fit->data_.weights.has_value() ? fit->data_.weights->data() : nullptr;
+  GroupBySpan(*fit->basis_, &fit->sites_);
+  fit->setting_.basis = &*fit->basis_;
+  fit->setting_.data = &fit->sites_;
+
+  auto problem = std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
+  problem->AddVariables("control_points", fit->Variables(fit->StartPoints()));
+  for (const NameSpec& name : fit->spec_.terms) {
+    const Term* term = nullptr;
+    OptionValues options;
+    if (!TermRegistry::Global().Resolve(name, &term, &options, error)) return nullptr;
+    auto family = term->MakeFamily(fit->setting_, options, error);
+    if (family == nullptr) return nullptr;
+    problem->AddTerm(name.ToString(), std::move(family));
+  }
+  const double scale = fit->setting_.scale;
+  problem->SetUnits({1.0 / scale, 1.0 / (scale * scale), 1.0 / scale});
+  problem->SetCurveFit(std::move(fit));
+  return problem;
+}
+
+}  // namespace batten

@@ -1,0 +1,82 @@
+#ifndef BATTEN_PROBLEMS_FIT_PROBLEM_H_
+#define BATTEN_PROBLEMS_FIT_PROBLEM_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cost_functions/term.h"
+#include "problems/data_set.h"
+#include "problems/problem.h"
+#include "splines/bspline_curve.h"
+#include "splines/knot_rules.h"
+#include "splines/parameterization.h"
+
+namespace batten {
+
+inline constexpr int kMaxControlPoints = 10'000'000;
+
+/// What is to be fitted to a data set; every field as in problem files and flags.
+struct FitSpec {
+  std::string name;
+  int degree = 3;                 // 1..kMaxDegree
+  bool closed = false;
+  int control_points = 0;         // open: degree + 1..kMaxControlPoints; closed: from 1
+  /// Nothing: the data set's own column t.
+  std::optional<Parameterization> parameters = Parameterization::kUniform;
+  KnotRule knots = KnotRule::kUniform;
+  EndKnots ends = EndKnots::kEndInterpolating;   // open only
+  std::vector<double> given_knots;               // not empty: instead of the rule
+  std::optional<std::pair<double, double>> domain;  // with given parameters; default: their range,
+                                                    // closed: [0, 1]
+  std::vector<NameSpec> terms;                   // empty: interpolation
+  std::string start = "data";                    // data | centroid
+};
+
+/// The curve-fit side of a problem: data, spline space, parameters, and the map between the scaled
+/// coordinates inside and the user's.
+class CurveFit {
+ public:
+  const FitSpec& spec() const { return spec_; }
+  const DataSet& data() const { return data_; }
+  const BsplineBasis& basis() const { return *basis_; }
+  const FitSetting& setting() const { return setting_; }
+  /// t_i of data point i.
+  const Eigen::VectorXd& parameters() const { return parameters_; }
+  int dimension() const { return static_cast<int>(data_.points.cols()); }
+  /// Longest side of the data's box, in the user's units; 1 if all points are equal.
+  double size() const { return size_; }
+  /// Control points in the user's units of all variables x, and back.
+  Points ControlPoints(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd Variables(const Points& control_points) const;
+  BsplineCurve Curve(const Eigen::VectorXd& x) const;
+
+  CurveFit(const CurveFit&) = delete;
+  CurveFit& operator=(const CurveFit&) = delete;
+
+ private:
+  friend std::unique_ptr<Problem> MakeFitProblem(DataSet, FitSpec, std::string*);
+  CurveFit(DataSet data, FitSpec spec) : spec_(std::move(spec)), data_(std::move(data)) {}
+  bool ChooseParameters(std::string* error);
+  bool ChooseKnots(std::string* error);
+  void Scale();
+  Points StartPoints() const;
+
+  FitSpec spec_;
+  DataSet data_;
+  std::optional<BsplineBasis> basis_;
+  Eigen::VectorXd parameters_;
+  std::pair<double, double> domain_ = {0.0, 1.0};
+  double size_ = 1.0;
+  Sites sites_;
+  FitSetting setting_;
+};
+
+/// Problem of `spec` over `data`: parameters, knots, scaling to the unit box (by a power of two),
+/// terms and start. Null with one sentence in `error`: what was found, what is allowed.
+std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error);
+
+}  // namespace batten
+
+#endif  // BATTEN_PROBLEMS_FIT_PROBLEM_H_

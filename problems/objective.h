@@ -1,0 +1,75 @@
+#ifndef BATTEN_PROBLEMS_OBJECTIVE_H_
+#define BATTEN_PROBLEMS_OBJECTIVE_H_
+
+#include <memory>
+#include <vector>
+
+#include "problems/curve_view.h"
+#include "problems/evaluation_monitor.h"
+#include "problems/problem.h"
+
+namespace batten {
+
+/// The evaluator of a problem's E that every solver uses: in the free variables that remain after the
+/// problem's linear constraints are eliminated, counted by a monitor. Nothing is evaluated before it
+/// is asked for; what is compiled on the way (rows, normal band) is compiled at its first use.
+class Objective {
+ public:
+  struct Options {
+    /// False: everything goes through the autodiff functors, block by block.
+    bool compile = true;
+  };
+
+  /// `problem` and `monitor` (null: nobody counts) must outlive this.
+  Objective(const Problem* problem, EvaluationMonitor* monitor, Options options);
+  Objective(const Problem* problem, EvaluationMonitor* monitor)
+      : Objective(problem, monitor, Options()) {}
+
+  const Problem& problem() const { return *problem_; }
+  const Options& options() const { return options_; }
+  int num_variables() const { return num_variables_; }  ///< Free ones: the size of x below.
+  Eigen::VectorXd start() const;
+  /// All of the problem's variables at the free ones x.
+  Eigen::VectorXd Expand(const Eigen::VectorXd& x) const;
+
+  Status Energy(const Eigen::VectorXd& x, double* energy);
+  Status EnergyAndGradient(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient);
+  /// The gradient alone; of a quadratic from the normal band, at no cost per data point.
+  Status Gradient(const Eigen::VectorXd& x, Eigen::VectorXd* gradient);
+  /// Residuals r and J = dr/dx of all blocks such that E = ||r||^2; losses and weights are in both,
+  /// as their Gauss-Newton model (r scaled by the root of weight * rho', J likewise).
+  Status Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd* residuals, SparseRows* jacobian);
+  /// Second derivative of E times v: exact.
+  Status HessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& v, Eigen::VectorXd* product);
+  /// Energies of blocks begin..end-1 of one term, in its own numbering.
+  Status PartialEnergy(const Eigen::VectorXd& x, int term, int begin, int end, double* energy);
+
+  /// E is quadratic and compiled: HessianTimes does not depend on x, and
+  /// E(x + v) - E(x) = g'v + v'(HessianTimes v) / 2 without cancellation.
+  bool is_quadratic() const { return view_ != nullptr; }
+  /// The structure geometric methods ask for; null where not all of E is compiled rows.
+  CurveView* curve_view() { return view_.get(); }
+
+  // Not counted: for run control and reports.
+  /// Size below which |g| is noise: 4 eps times the norm of sum |J|'(|J||x| + |r|), doubled as the
+  /// gradient of E without factor 1/2 is.
+  double GradientRoundingFloor(const Eigen::VectorXd& x) const;
+  std::vector<double> TermEnergies(const Eigen::VectorXd& x) const;
+
+ private:
+  bool Allow(Evaluation kind, const Eigen::VectorXd* x) {
+    return monitor_ == nullptr || monitor_->Allow(kind, x);
+  }
+  Status EvaluateTerms(const Eigen::VectorXd& all, double* energy, Eigen::VectorXd* gradient) const;
+  Status EvaluateRows(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient) const;
+
+  const Problem* problem_;
+  EvaluationMonitor* monitor_;
+  Options options_;
+  int num_variables_;
+  std::unique_ptr<CurveView> view_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_PROBLEMS_OBJECTIVE_H_

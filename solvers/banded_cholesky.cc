@@ -1,0 +1,66 @@
+#include "solvers/banded_cholesky.h"
+
+#include <cmath>
+#include <limits>
+
+#include "splines/banded_cholesky.h"
+#include "splines/banded_qr.h"
+
+namespace batten {
+
+SolverInfo BandedCholeskySolver::ClassInfo() {
+  SolverInfo info;
+  info.name = "banded_cholesky";
+  info.summary = "direct: normal equations in their band, the fastest";
+  info.source = "de Boor, A Practical Guide to Splines, ch. XIV; Golub & Van Loan, sec. 4.3";
+  info.needs = {"compiled rows"};
+  info.supports = {"linear constraints", "weights", "any rank (through banded_qr)"};
+  info.native_rule = NativeRule::kDirect;
+  return info;
+}
+
+std::string BandedCholeskySolver::WhyUnsupported(const Objective& objective) const {
+  const std::string why = WhyNoCurveView(objective, "banded_cholesky");
+  return why.empty() ? WhyNoBounds(objective, "banded_cholesky") : why;
+}
+
+Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* context,
+                                         Eigen::VectorXd* x) {
+  const Status status = context->Iterate(*x);
+  if (status != Status::kOk) return {context->stop_reason(), ""};
+  const CurveView& view = *objective->curve_view();
+  const NormalBand& band = view.normal_band();
+  BandedCholesky factor;
+  std::string message;
+  if (factor.Factor(band)) {
+    // For the difference from the start: what the start has right loses no digits.
+    Eigen::VectorXd step(x->size());
+    band.NormalResidual(x->data(), step.data());
+    factor.Solve(step.data(), view.dimension());
+    *x += step;
+    // Forward error of normal equations: the condition number of N times eps (Higham, Accuracy and
+    // Stability, sec. 20.4); 1e-8 of the data's size is what the solvers are to agree to.
+    constexpr double kDigitsLost = 1e-8;
+    const double condition = factor.ConditionEstimate();
+    const double error = condition * std::numeric_limits<double>::epsilon();
+    context->Note("condition of the normal equations", NumberText(condition));
+    if (error > kDigitsLost) {
+      message = "the normal equations have condition " + NumberText(condition) +
+                ": about " + std::to_string(static_cast<int>(std::max(0.0, -std::log10(error)))) +
+                " digits are left; banded_qr keeps more";
+    }
+  } else {
+    const Points start = Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
+    const NearestSolution solution = SolveNearest(view.row_source(), start);
+    *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
+    message = "the normal equations are singular to working precision; solved by " +
+              solution.method + (solution.unique ? "" : ", nearest to the start");
+  }
+  if (!x->allFinite()) {
+    return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
+  }
+  context->Iterate(*x);
+  return {StopReason::kSolved, message};
+}
+
+}  // namespace batten

@@ -1,0 +1,45 @@
+#include "solvers/banded_qr.h"
+
+#include "splines/banded_qr.h"
+
+namespace batten {
+
+SolverInfo BandedQrSolver::ClassInfo() {
+  SolverInfo info;
+  info.name = "banded_qr";
+  info.summary = "direct: QR of the rows in their band, the most accurate";
+  info.source = "Golub & Van Loan, Matrix Computations, sec. 5.2; Cox, IMA J. Appl. Math. 1981";
+  info.needs = {"compiled rows"};
+  info.supports = {"linear constraints", "weights", "any rank"};
+  info.native_rule = NativeRule::kDirect;
+  return info;
+}
+
+std::string BandedQrSolver::WhyUnsupported(const Objective& objective) const {
+  const std::string why = WhyNoCurveView(objective, "banded_qr");
+  return why.empty() ? WhyNoBounds(objective, "banded_qr") : why;
+}
+
+Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
+  const Status status = context->Iterate(*x);
+  if (status != Status::kOk) return {context->stop_reason(), ""};
+  const CurveView& view = *objective->curve_view();
+  const Points start =
+      Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
+  const NearestSolution solution = SolveNearest(view.row_source(), start);
+  if (!solution.control_points.allFinite()) {
+    return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
+  }
+  *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
+  context->Note("smallest over largest diagonal entry of R", NumberText(solution.diagonal_ratio));
+  context->Iterate(*x);
+  if (solution.unique) return {StopReason::kSolved, ""};
+  return {StopReason::kSolved,
+          "the minimum is not unique: " +
+              (solution.rank < 0 ? std::string("rank below ")
+                                 : "rank " + std::to_string(solution.rank) + " of ") +
+              std::to_string(view.num_points()) +
+              "; this is the solution nearest to the start (" + solution.method + ")"};
+}
+
+}  // namespace batten

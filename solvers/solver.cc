@@ -1,0 +1,81 @@
+#include "solvers/solver.h"
+
+#include <glog/logging.h>
+
+#include "problems/fit_problem.h"
+
+namespace batten {
+namespace {
+
+struct ReasonWord {
+  StopReason reason;
+  const char* word;
+};
+
+constexpr ReasonWord kReasonWords[] = {
+    {StopReason::kNotRun, "not_run"},
+    {StopReason::kSolved, "solved"},
+    {StopReason::kGradientSmall, "gradient_small"},
+    {StopReason::kStepSmall, "step_small"},
+    {StopReason::kRoundingFloor, "rounding_floor"},
+    {StopReason::kNativeStop, "native_stop"},
+    {StopReason::kLineSearchEnded, "line_search_ended"},
+    {StopReason::kStalled, "stalled"},
+    {StopReason::kDiverged, "diverged"},
+    {StopReason::kIterationLimit, "iteration_limit"},
+    {StopReason::kTimeLimit, "time_limit"},
+    {StopReason::kNumericalFailure, "numerical_failure"},
+    {StopReason::kInterrupted, "interrupted"},
+};
+
+}  // namespace
+
+const char* ToString(StopReason reason) {
+  for (const ReasonWord& row : kReasonWords) {
+    if (row.reason == reason) return row.word;
+  }
+  return "unknown";
+}
+
+bool FromString(const std::string& text, StopReason* reason) {
+  for (const ReasonWord& row : kReasonWords) {
+    if (text == row.word) {
+      *reason = row.reason;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool IsSuccess(StopReason reason) {
+  return reason == StopReason::kSolved || reason == StopReason::kGradientSmall ||
+         reason == StopReason::kStepSmall || reason == StopReason::kRoundingFloor;
+}
+
+Outcome Solver::Minimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
+  const std::string why = WhyUnsupported(*objective);
+  CHECK(why.empty()) << why;
+  CHECK_EQ(x->size(), objective->num_variables());
+  if (!x->allFinite()) return {StopReason::kNumericalFailure, "the start is not finite"};
+  return DoMinimize(objective, context, x);
+}
+
+std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name) {
+  if (objective.is_quadratic()) return "";
+  if (!objective.options().compile) {
+    return solver_name + " needs compiled rows, but compilation is off";
+  }
+  for (const Problem::TermInstance& term : objective.problem().terms()) {
+    if (term.family->rows() == nullptr) {
+      return solver_name + " needs terms that are affine, alike for all coordinates and without loss; " +
+             term.name + " is not";
+    }
+  }
+  return solver_name + " needs constraints that treat all coordinates alike";
+}
+
+std::string WhyNoBounds(const Objective& objective, const std::string& solver_name) {
+  return objective.problem().has_bounds() ? solver_name + " ignores bounds; use ceres_lm" : "";
+}
+
+}  // namespace batten

@@ -1,0 +1,81 @@
+#include "solvers/solver_registry.h"
+
+#include <glog/logging.h>
+
+#include "solvers/banded_cholesky.h"
+#include "solvers/banded_qr.h"
+#include "solvers/cg.h"
+#include "solvers/ceres_lbfgs.h"
+#include "solvers/ceres_lm.h"
+#include "solvers/gim.h"
+#include "solvers/lbfgs.h"
+#include "solvers/lspia.h"
+
+namespace batten {
+namespace {
+
+// The built-in solvers: one line each.
+constexpr SolverEntry (*kBuiltInSolvers[])() = {
+    &MakeSolverEntry<BandedQrSolver>,
+    &MakeSolverEntry<BandedCholeskySolver>,
+    &MakeSolverEntry<GimSolver>,
+    &MakeSolverEntry<LspiaSolver>,
+    &MakeSolverEntry<CgSolver>,
+    &MakeSolverEntry<LbfgsSolver>,
+    &MakeSolverEntry<CeresLbfgsSolver>,
+    &MakeSolverEntry<CeresLmSolver>,
+};
+
+}  // namespace
+
+SolverRegistry& SolverRegistry::Global() {
+  static SolverRegistry& registry = *[] {
+    auto* made = new SolverRegistry;
+    for (const auto make : kBuiltInSolvers) made->Register(make());
+    return made;
+  }();
+  return registry;
+}
+
+void SolverRegistry::Register(SolverEntry entry) {
+  const std::string name = entry.info.name;
+  CHECK(entries_.emplace(name, std::move(entry)).second) << "two solvers are named " << name;
+}
+
+std::vector<std::string> SolverRegistry::Names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, entry] : entries_) names.push_back(name);
+  return names;
+}
+
+const SolverInfo* SolverRegistry::Find(const std::string& name) const {
+  const auto found = entries_.find(name);
+  return found == entries_.end() ? nullptr : &found->second.info;
+}
+
+std::unique_ptr<Solver> SolverRegistry::Make(const NameSpec& spec, OptionValues* options_used,
+                                             std::string* error) const {
+  const auto found = entries_.find(spec.name);
+  if (found == entries_.end()) {
+    *error = UnknownNameMessage("solver", spec.name, Names());
+    return nullptr;
+  }
+  const SolverEntry& entry = found->second;
+  if (entry.info.wraps_solver != (spec.wrapped != nullptr)) {
+    *error = entry.info.wraps_solver
+                 ? spec.name + " wraps a solver; write " + spec.name + ":SOLVER"
+                 : spec.name + " wraps nothing; found :" + spec.wrapped->ToString();
+    return nullptr;
+  }
+  OptionValues options;
+  if (!ResolveOptions(entry.info.options, spec, &options, error)) return nullptr;
+  std::unique_ptr<Solver> base;
+  if (spec.wrapped != nullptr) {
+    base = Make(*spec.wrapped, nullptr, error);
+    if (base == nullptr) return nullptr;
+  }
+  if (options_used != nullptr) *options_used = options;
+  return entry.make(options, std::move(base));
+}
+
+}  // namespace batten

@@ -1,0 +1,34 @@
+#include "solvers/stepper.h"
+
+namespace batten {
+
+std::optional<Outcome> Stepper::Start(Objective* objective, RunContext* context,
+                                      Eigen::VectorXd* x) {
+  objective_ = objective;
+  context_ = context;
+  return DoStart(x);
+}
+
+Outcome Stepper::Ended(Status status) const {
+  if (status == Status::kStop) return {context_->stop_reason(), ""};
+  return {StopReason::kNumericalFailure, "the objective has no finite value there"};
+}
+
+Outcome Stepper::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
+  if (std::optional<Outcome> outcome = Start(objective, context, x)) return *outcome;
+  while (true) {
+    const Status status = context->Iterate(*x);
+    if (status != Status::kOk) return Ended(status);
+    if (std::optional<Outcome> outcome = Step(x)) return *outcome;
+  }
+}
+
+std::optional<Outcome> FixedPoint::DoStep(Eigen::VectorXd* x) {
+  const Status status = Map(*x, &next_);
+  if (status != Status::kOk) return Ended(status);
+  if (std::optional<Outcome> outcome = Inspect(*x, next_)) return outcome;
+  x->swap(next_);
+  return std::nullopt;
+}
+
+}  // namespace batten

@@ -1,0 +1,56 @@
+#ifndef BATTEN_SOLVERS_STEPPER_H_
+#define BATTEN_SOLVERS_STEPPER_H_
+
+#include <optional>
+
+#include "solvers/solver.h"
+
+namespace batten {
+
+/// A solver that is a loop of like steps. Several can be stepped in turn (lockstep), and a run can be
+/// left and taken up again from State().
+class Stepper : public Solver {
+ public:
+  /// Set-up at *x, which it may move. An outcome ends the run here.
+  std::optional<Outcome> Start(Objective* objective, RunContext* context, Eigen::VectorXd* x);
+  /// One iteration from *x.
+  std::optional<Outcome> Step(Eigen::VectorXd* x) { return DoStep(x); }
+  /// What the next Step needs beside x, as numbers; set back by Restore after a Start at the same x.
+  virtual std::vector<double> State() const { return {}; }
+  virtual void Restore(const std::vector<double>& /*state*/) {}
+
+ protected:
+  Objective* objective() const { return objective_; }
+  RunContext* context() const { return context_; }
+  /// The outcome that goes with an evaluation's status other than kOk.
+  Outcome Ended(Status status) const;
+
+ private:
+  Outcome DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) final;
+  virtual std::optional<Outcome> DoStart(Eigen::VectorXd* x) = 0;
+  virtual std::optional<Outcome> DoStep(Eigen::VectorXd* x) = 0;
+
+  Objective* objective_ = nullptr;
+  RunContext* context_ = nullptr;
+};
+
+/// A stepper that is a map x -> G(x), which an acceleration can call.
+class FixedPoint : public Stepper {
+ public:
+  /// Writes G(x); x stays.
+  virtual Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) = 0;
+
+ private:
+  std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+  /// Called with x and G(x) after each plain step; an outcome ends the run (a stall guard).
+  virtual std::optional<Outcome> Inspect(const Eigen::VectorXd& /*x*/,
+                                         const Eigen::VectorXd& /*g_of_x*/) {
+    return std::nullopt;
+  }
+
+  Eigen::VectorXd next_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_SOLVERS_STEPPER_H_

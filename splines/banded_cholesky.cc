@@ -1,0 +1,280 @@
+#include "splines/banded_cholesky.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "splines/row_pack.h"
+
+namespace batten {
+namespace {
+
+/// Fill in the border below this, relative to the largest diagonal entry, is set to zero: products
+/// of such entries could only be denormal, and those cost several times as much.
+constexpr double kDecayed = 1e-200;
+/// Columns from one search for decayed entries to the next.
+constexpr int kDecayInterval = 8;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// Row-major size x size, upper triangle, in place: N = U' D U, U with unit diagonal; 1 / D takes
+/// the place of the diagonal. False if a pivot is not above its limit.
+bool FactorDense(int size, const double* limits, double* u) {
+  for (int j = 0; j < size; ++j) {
+    const double pivot = u[j * size + j];
+    if (!(pivot > limits[j]) || !std::isfinite(pivot)) return false;
+    const double inverse = 1.0 / pivot;
+    for (int i = j + 1; i < size; ++i) {
+      const double factor = u[j * size + i] * inverse;
+      for (int k = i; k < size; ++k) u[i * size + k] -= factor * u[j * size + k];
+    }
+    for (int k = j + 1; k < size; ++k) u[j * size + k] *= inverse;
+    u[j * size + j] = inverse;
+  }
+  return true;
+}
+
+void SolveDense(int size, const double* u, int dimension, double* x) {
+  for (int j = 0; j < size; ++j) {
+    for (int k = j + 1; k < size; ++k) {
+      for (int c = 0; c < dimension; ++c) {
+        x[k * dimension + c] -= u[j * size + k] * x[j * dimension + c];
+      }
+    }
+  }
+  for (int j = size - 1; j >= 0; --j) {
+    for (int c = 0; c < dimension; ++c) {
+      double sum = x[j * dimension + c] * u[j * size + j];
+      for (int k = j + 1; k < size; ++k) sum -= u[j * size + k] * x[k * dimension + c];
+      x[j * dimension + c] = sum;
+    }
+  }
+}
+
+/// Sets decayed entries to zero; true if nothing is left.
+bool FlushDecayed(double limit, std::vector<double>* entries) {
+  bool all_zero = true;
+  for (double& entry : *entries) {
+    if (std::abs(entry) < limit) entry = 0.0;
+    all_zero = all_zero && entry == 0.0;
+  }
+  return all_zero;
+}
+
+double OneNorm(const std::vector<double>& x) {
+  double sum = 0.0;
+  for (const double value : x) sum += std::abs(value);
+  return sum;
+}
+
+}  // namespace
+
+/// What the eliminated rows have added to the rows that follow.
+struct BandedCholesky::Pending {
+  std::vector<double> band;    // width x width: rows j.., columns from the diagonal on
+  std::vector<double> border;  // (width - 1) x (width - 1): rows j.., border columns
+  std::vector<double> corner;  // border x border
+};
+
+bool BandedCholesky::Factor(const NormalBand& matrix) {
+  n_ = matrix.size();
+  width_ = matrix.width();
+  const int border = std::max(width_ - 1, 0);
+  const bool overlaps = matrix.cyclic() && n_ < 2 * width_ - 1;
+  num_border_ = matrix.cyclic() && !overlaps ? border : 0;
+  const int dense_size = overlaps ? n_ : std::min(n_, border + num_border_);
+  num_swept_ = n_ - dense_size;
+  num_bordered_ = 0;
+  border_.clear();
+  const std::vector<double> diagonal = matrix.Diagonal();
+  largest_diagonal_ = 0.0;
+  for (const double entry : diagonal) largest_diagonal_ = std::max(largest_diagonal_, entry);
+  norm_ = 0.0;
+  for (const double sum : matrix.AbsoluteRowSums()) norm_ = std::max(norm_, sum);
+
+  Pending pending = FirstPending(matrix.band());
+  factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
+  const bool swept = WithFixedShape(width_, 1, [&](auto width, auto) {
+    return Sweep<width>(matrix.band(), &pending);
+  });
+  if (!swept) return false;
+  FillDense(matrix, pending);
+  std::vector<double> limits(diagonal.end() - dense_size, diagonal.end());
+  for (double& limit : limits) limit *= n_ * kEpsilon;
+  return FactorDense(dense_size, limits.data(), dense_.data());
+}
+
+BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& band) const {
+  const int border = std::max(width_ - 1, 0);
+  Pending pending;
+  pending.band.assign(width_ * width_, 0.0);
+  pending.border.assign(num_border_ * num_border_, 0.0);
+  pending.corner.assign(num_border_ * num_border_, 0.0);
+  // Entry k of border row b stands in column b + k - border, past the end of the matrix.
+  for (int b = 0; b < num_border_; ++b) {
+    const double* row = band.data() + static_cast<std::size_t>(n_ - num_border_ + b) * width_;
+    for (int k = border - b; k < width_; ++k) {
+      pending.border[(b + k - border) * num_border_ + b] = row[k];
+    }
+  }
+  return pending;
+}
+
+template <int kWidth>
+bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
+  const int width = kWidth > 0 ? kWidth : width_;
+  // Of a size known to the compiler where the width is, so that it stays in registers.
+  using Window = std::conditional_t<(kWidth > 0), std::array<double, std::max(kWidth * kWidth, 1)>,
+                                    std::vector<double>>;
+  Window window;
+  if constexpr (kWidth < 0) window.resize(pending->band.size());
+  std::copy(pending->band.begin(), pending->band.end(), window.begin());
+  bool bordered = num_border_ > 0;
+  for (int j = 0; j < num_swept_; ++j) {
+    const double* entry = band.data() + static_cast<std::size_t>(j) * width;
+    double* u = factor_.data() + static_cast<std::size_t>(j) * width;
+    const double pivot = entry[0] + window[0];
+    if (!(pivot > n_ * kEpsilon * entry[0]) || !std::isfinite(pivot)) return false;
+    const double inverse = 1.0 / pivot;
+    for (int k = 1; k < width; ++k) u[k] = entry[k] + window[k];
+    for (int i = 1; i < width; ++i) {
+      const double factor = u[i] * inverse;
+      for (int k = i; k < width; ++k) {
+        window[(i - 1) * width + k - i] = window[i * width + k - i] - factor * u[k];
+      }
+      u[i] = factor;
+    }
+    u[0] = inverse;
+    if (bordered) bordered = SweepBorder<kWidth>(j, u, pending);
+  }
+  std::copy_n(window.begin(), pending->band.size(), pending->band.begin());
+  return true;
+}
+
+template <int kWidth>
+bool BandedCholesky::SweepBorder(int j, const double* u, Pending* pending) {
+  const int border = kWidth > 0 ? kWidth - 1 : num_border_;
+  const double inverse = u[0];
+  double* row = pending->border.data();
+  border_.resize(border_.size() + border);
+  double* factor = border_.data() + border_.size() - border;
+  for (int b = 0; b < border; ++b) factor[b] = row[b] * inverse;
+  for (int a = 0; a < border; ++a) {
+    for (int b = 0; b < border; ++b) pending->corner[a * border + b] -= factor[a] * row[b];
+  }
+  // Row i of the window moves up by one; u[i] is already divided by the pivot.
+  for (int b = 0; b < border; ++b) {
+    const double first = row[b];
+    for (int i = 1; i < border; ++i) {
+      row[(i - 1) * border + b] = row[i * border + b] - u[i] * first;
+    }
+    row[(border - 1) * border + b] = -u[border] * first;
+  }
+  num_bordered_ = j + 1;
+  if (num_bordered_ % kDecayInterval != 0) return true;
+  return !FlushDecayed(kDecayed * largest_diagonal_, &pending->border);
+}
+
+void BandedCholesky::FillDense(const NormalBand& matrix, const Pending& pending) {
+  const int size = n_ - num_swept_;
+  if (matrix.cyclic() && num_border_ == 0) {
+    const Eigen::MatrixXd dense = matrix.ToDense();
+    dense_.assign(dense.data(), dense.data() + dense.size());
+    return;
+  }
+  dense_.assign(static_cast<std::size_t>(size) * size, 0.0);
+  for (int i = 0; i < size; ++i) {
+    const double* row = matrix.band().data() + static_cast<std::size_t>(num_swept_ + i) * width_;
+    for (int k = 0; k < width_ && i + k < size; ++k) dense_[i * size + i + k] = row[k];
+  }
+  const int inner = size - num_border_;
+  for (int i = 0; i < inner; ++i) {
+    for (int k = 0; i + k < inner; ++k) dense_[i * size + i + k] += pending.band[i * width_ + k];
+    for (int b = 0; b < num_border_; ++b) {
+      dense_[i * size + inner + b] += pending.border[i * num_border_ + b];
+    }
+  }
+  for (int a = 0; a < num_border_; ++a) {
+    for (int b = a; b < num_border_; ++b) {
+      dense_[(inner + a) * size + inner + b] += pending.corner[a * num_border_ + b];
+    }
+  }
+}
+
+template <int kWidth, int kDimension>
+void BandedCholesky::SolveBand(double* x, int dimension) const {
+  const int width = kWidth > 0 ? kWidth : width_;
+  const int d = kWidth > 0 ? kDimension : dimension;
+  double* border = x + static_cast<std::size_t>(n_ - num_border_) * d;
+  for (int j = 0; j < num_swept_; ++j) {
+    const double* u = factor_.data() + static_cast<std::size_t>(j) * width;
+    double* near = x + static_cast<std::size_t>(j) * d;
+    for (int k = 1; k < width; ++k) {
+      for (int c = 0; c < d; ++c) near[k * d + c] -= u[k] * near[c];
+    }
+    if (j >= num_bordered_) continue;
+    const double* factor = border_.data() + static_cast<std::size_t>(j) * num_border_;
+    for (int b = 0; b < num_border_; ++b) {
+      for (int c = 0; c < d; ++c) border[b * d + c] -= factor[b] * near[c];
+    }
+  }
+  SolveDense(n_ - num_swept_, dense_.data(), d, x + static_cast<std::size_t>(num_swept_) * d);
+  for (int j = num_swept_ - 1; j >= 0; --j) {
+    const double* u = factor_.data() + static_cast<std::size_t>(j) * width;
+    double* near = x + static_cast<std::size_t>(j) * d;
+    for (int c = 0; c < d; ++c) {
+      double sum = near[c] * u[0];
+      for (int k = width - 1; k > 0; --k) sum -= u[k] * near[k * d + c];
+      near[c] = sum;
+    }
+    if (j >= num_bordered_) continue;
+    const double* factor = border_.data() + static_cast<std::size_t>(j) * num_border_;
+    for (int b = 0; b < num_border_; ++b) {
+      for (int c = 0; c < d; ++c) near[c] -= factor[b] * border[b * d + c];
+    }
+  }
+}
+
+void BandedCholesky::Solve(double* x, int dimension) const {
+  WithFixedShape(width_, dimension, [&](auto width, auto fixed_dimension) {
+    SolveBand<width, fixed_dimension>(x, dimension);
+  });
+}
+
+double BandedCholesky::ConditionEstimate() const {
+  if (n_ == 0) return 1.0;
+  // Hager 1984 with Higham's changes of 1988: ||N^-1||_1 is the maximum of the convex function
+  // ||N^-1 x||_1 over the unit ball, climbed from corner to corner.
+  std::vector<double> x(n_, 1.0 / n_);
+  std::vector<double> sign;
+  double estimate = 0.0;
+  int corner = -1;
+  for (int step = 0; step < 5; ++step) {
+    Solve(x.data(), 1);
+    const double norm = OneNorm(x);
+    if (step > 0 && !(norm > estimate)) break;
+    estimate = norm;
+    std::vector<double> previous = std::move(sign);
+    sign.resize(n_);
+    for (int i = 0; i < n_; ++i) sign[i] = x[i] >= 0.0 ? 1.0 : -1.0;
+    if (sign == previous) break;
+    x = sign;
+    Solve(x.data(), 1);
+    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const int next = static_cast<int>(std::max_element(x.begin(), x.end(), larger) - x.begin());
+    if (corner >= 0 && std::abs(x[corner]) == std::abs(x[next])) break;
+    corner = next;
+    // A unit vector on a background that keeps the decaying solution away from denormals.
+    x.assign(n_, 1e-30);
+    x[corner] = 1.0;
+  }
+  for (int i = 0; i < n_; ++i) {
+    x[i] = (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + static_cast<double>(i) / std::max(n_ - 1, 1));
+  }
+  Solve(x.data(), 1);
+  estimate = std::max(estimate, 2.0 * OneNorm(x) / (3.0 * n_));
+  return std::max(1.0, norm_ * estimate);
+}
+
+}  // namespace batten

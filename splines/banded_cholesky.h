@@ -1,0 +1,51 @@
+#ifndef BATTEN_SPLINES_BANDED_CHOLESKY_H_
+#define BATTEN_SPLINES_BANDED_CHOLESKY_H_
+
+#include <vector>
+
+#include "splines/normal_band.h"
+
+namespace batten {
+
+/// N = U' D U in the band, U with unit diagonal. Cyclic matrices carry their last width - 1 columns
+/// along as a border, but only as far as the fill in it has not decayed; what is left at the end,
+/// and small overlapping matrices (n < 2 width - 1), are dense.
+class BandedCholesky {
+ public:
+  /// False if a pivot is not above n * eps * (its diagonal entry) or not finite: N is singular to
+  /// working precision, nothing can be solved.
+  bool Factor(const NormalBand& matrix);
+  /// x = N^-1 x, n x d row-major.
+  void Solve(double* x, int dimension) const;
+  /// Estimated ||N||_1 ||N^-1||_1 (Hager's and Higham's estimator), at least 1.
+  double ConditionEstimate() const;
+  int size() const { return n_; }
+
+ private:
+  struct Pending;
+  Pending FirstPending(const std::vector<double>& band) const;
+  /// Eliminates columns 0..num_swept_ - 1. kWidth < 0: any width. False as Factor().
+  template <int kWidth>
+  bool Sweep(const std::vector<double>& band, Pending* pending);
+  /// The border's part of column j, whose row of the factor is u. False once the fill is zero.
+  template <int kWidth>
+  bool SweepBorder(int j, const double* u, Pending* pending);
+  void FillDense(const NormalBand& matrix, const Pending& pending);
+  template <int kWidth, int kDimension>
+  void SolveBand(double* x, int dimension) const;
+
+  int n_ = 0;
+  int width_ = 0;
+  int num_swept_ = 0;     // columns eliminated in the band; the others are dense
+  int num_border_ = 0;    // width - 1 if cyclic without overlap
+  int num_bordered_ = 0;  // rows with fill in the border
+  double norm_ = 0.0;
+  double largest_diagonal_ = 0.0;
+  std::vector<double> factor_;  // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
+  std::vector<double> border_;  // num_bordered_ x num_border_: U(j, n - num_border_ + b)
+  std::vector<double> dense_;   // upper triangle, row-major, 1 / D on its diagonal
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_SPLINES_BANDED_CHOLESKY_H_

@@ -1,0 +1,145 @@
+#include "splines/banded_qr.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "splines/fold_rows.h"
+
+namespace batten {
+namespace {
+
+/// Rows of one window that are collected before they are folded: four square roots and divisions
+/// per fold are then shared by more rows.
+constexpr int kRowsPerFold = 2 * kMaxRowsPerBlock;
+
+/// Carried entries below this, relative to the largest of the triangle, are zero: they could only
+/// add squares that underflow.
+constexpr double kDecayed = 1e-140;
+
+/// Any rows x columns, packed; all zero at first.
+class RowBuffer {
+ public:
+  RowBuffer(int num_rows, int num_columns)
+      : stride_(PaddedRows(num_rows)), data_(static_cast<std::size_t>(stride_) * num_columns) {}
+  double& operator()(int row, int column) { return data_[column * stride_ + row]; }
+  PackedRows packed() {
+    return {AsPacks(data_.data()), stride_ / kPackLanes, stride_ / kPackLanes};
+  }
+  /// The first `count` columns lose their first one and get a zero one.
+  void ShiftColumns(int count) {
+    std::copy_n(data_.begin() + stride_, (count - 1) * stride_, data_.begin());
+    std::fill_n(data_.begin() + (count - 1) * stride_, stride_, 0.0);
+  }
+  double LargestInColumns(int count) const {
+    double largest = 0.0;
+    for (int k = 0; k < count * stride_; ++k) largest = std::max(largest, std::abs(data_[k]));
+    return largest;
+  }
+
+ private:
+  int stride_;
+  std::vector<double> data_;
+};
+
+}  // namespace
+
+BandedQr::BandedQr(const RowShape& shape)
+    : shape_(shape),
+      overlaps_(shape.cyclic && shape.num_columns < 2 * shape.width - 1),
+      width_(overlaps_ ? shape.num_columns : std::min(shape.width, shape.num_columns)),
+      num_border_(shape.cyclic && !overlaps_ ? std::max(width_ - 1, 0) : 0),
+      num_swept_(shape.num_columns - 2 * num_border_),
+      row_size_(width_ + shape.dimension),
+      triangle_(static_cast<std::size_t>(shape.num_columns) * row_size_, 0.0),
+      wrapped_(static_cast<std::size_t>(2 * num_border_) * row_size_, 0.0),
+      pending_(static_cast<std::size_t>(kRowsPerFold) * row_size_, 0.0) {}
+
+void BandedQr::Consume(const RowBlock& block) {
+  const int first_column = overlaps_ ? 0 : block.first_column;
+  if (first_column != pending_column_ || num_pending_ + block.stride > kRowsPerFold) {
+    FoldPending();
+    pending_column_ = first_column;
+  }
+  const auto target = [&](int column) {
+    return pending_.data() + column * kRowsPerFold + num_pending_;
+  };
+  if (overlaps_) {
+    for (int k = 0; k < width_; ++k) std::fill_n(target(k), block.stride, 0.0);
+    for (int j = 0; j < shape_.width; ++j) {
+      double* column = target((block.first_column + j) % width_);
+      for (int i = 0; i < block.stride; ++i) {
+        column[i] += block.coefficients[j * block.stride + i];
+      }
+    }
+  } else {
+    for (int j = 0; j < width_; ++j) {
+      std::copy_n(block.coefficients + j * block.stride, block.stride, target(j));
+    }
+  }
+  for (int c = 0; c < shape_.dimension; ++c) {
+    std::copy_n(block.right_hand_sides + c * block.stride, block.stride, target(width_ + c));
+  }
+  num_pending_ += block.stride;
+}
+
+void BandedQr::FoldPending() {
+  if (num_pending_ == 0) return;
+  const bool wraps = pending_column_ + width_ > shape_.num_columns;
+  const int first_border = shape_.num_columns - num_border_;
+  double* triangle = wraps ? wrapped_.data() + (pending_column_ - first_border) * row_size_
+                           : triangle_.data() + static_cast<std::size_t>(pending_column_) * row_size_;
+  const PackedRows rows = {AsPacks(pending_.data()), num_pending_ / kPackLanes,
+                           kRowsPerFold / kPackLanes};
+  residual_ += WithFixedShape(width_, shape_.dimension, [&](auto width, auto dimension) {
+    return FoldRows<width, dimension>(width_, shape_.dimension, rows, triangle, row_size_);
+  });
+  num_pending_ = 0;
+}
+
+void BandedQr::Finish() {
+  FoldPending();
+  if (num_border_ > 0) FoldWrapped();
+  double smallest = 0.0;
+  double largest = 0.0;
+  for (int j = 0; j < shape_.num_columns; ++j) {
+    const double size = std::abs(DiagonalEntry(j));
+    smallest = j == 0 ? size : std::min(smallest, size);
+    largest = std::max(largest, size);
+    if (!std::isfinite(size)) largest = std::nan("");
+  }
+  ratio_ = shape_.num_columns == 0 ? 1.0 : largest == 0.0 ? 0.0 : smallest / largest;
+  full_rank_ = ratio_ > kRankTolerance;
+}
+
+void BandedQr::FoldWrapped() {
+  const int size = 2 * num_border_;
+  const int d = shape_.dimension;
+  // The wrapped rows' columns stand in the order border, 0..num_border_ - 1. Another triangle has
+  // the latter, which have been eliminated, before the former, which are eliminated last.
+  RowBuffer wrapped(size, size + d);
+  for (int i = 0; i < size; ++i) {
+    const double* row = wrapped_.data() + i * row_size_;
+    for (int k = 0; k < width_ && i + k < size; ++k) wrapped(i, (i + k + num_border_) % size) = row[k];
+    for (int c = 0; c < d; ++c) wrapped(i, size + c) = row[width_ + c];
+  }
+  std::vector<double> reordered(static_cast<std::size_t>(size) * (size + d), 0.0);
+  residual_ += FoldAny(size, d, wrapped.packed(), reordered.data(), size + d);
+
+  // Its lower half is in the border; its upper half, and the carried rows it becomes, are folded
+  // along the band.
+  RowBuffer last(size, size + d);
+  CarryAlong(reordered, &last);
+  for (int i = num_border_; i < size; ++i) {
+    const double* row = reordered.data() + i * (size + d);
+    for (int k = i; k < size; ++k) last(i, k) = row[k - i];
+    for (int c = 0; c < d; ++c) last(i, size + c) = row[size + c];
+  }
+  dense_.assign(static_cast<std::size_t>(size) * (size + d), 0.0);
+  for (int i = 0; i < size; ++i) {
+    const double* row = triangle_.data() + static_cast<std::size_t>(num_swept_ + i) * row_size_;
+    double* target = dense_.data() + i * (size + d);
+    std::copy_n(row, std::min(width_, size - i), target);
+    std::copy_n(row + width_, d, target + size);
+  }
+  residual_ += FoldAny(size, d, last.packed(), dense_.data(), size + d);
+}

@@ -1,0 +1,207 @@
+#include "splines/normal_band.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "splines/row_pack.h"
+
+namespace batten {
+namespace {
+
+/// Columns of [A | Q] whose inner products with all later columns are summed in one pass, so that
+/// the sums stay in registers.
+constexpr int ColumnsPerPass(int later_columns) { return later_columns > 7 ? 1 : 2; }
+
+/// gram (row-major, kColumns x kColumns) = upper triangle of [A|Q]'[A|Q], from column kFirst on;
+/// of Q'Q only the diagonal is needed but all is summed.
+template <int kFirst, int kRows, int kColumns>
+void AddGramRows(const RowPack* columns, int packs, double* gram) {
+  constexpr int kCount = kColumns - kFirst;
+  RowPack sum[kRows][kCount] = {};
+  for (int i = 0; i < packs; ++i) {
+    RowPack left[kRows];
+    for (int r = 0; r < kRows; ++r) left[r] = columns[(kFirst + r) * packs + i];
+    for (int k = 0; k < kCount; ++k) {
+      const RowPack right = columns[(kFirst + k) * packs + i];
+      for (int r = 0; r < kRows && r <= k; ++r) sum[r][k] += left[r] * right;
+    }
+  }
+  for (int r = 0; r < kRows; ++r) {
+    for (int k = r; k < kCount; ++k) {
+      gram[(kFirst + r) * kColumns + kFirst + k] = SumOfLanes(sum[r][k]);
+    }
+  }
+}
+
+template <int kFirst, int kWidth, int kColumns>
+void AddGramPasses(const RowPack* columns, int packs, double* gram) {
+  if constexpr (kFirst < kWidth) {
+    constexpr int kRows = kWidth - kFirst > 1 ? ColumnsPerPass(kColumns - kFirst) : 1;
+    AddGramRows<kFirst, kRows, kColumns>(columns, packs, gram);
+    AddGramPasses<kFirst + kRows, kWidth, kColumns>(columns, packs, gram);
+  }
+}
+
+double Dot(const RowPack* a, const RowPack* b, int packs) {
+  RowPack sum = {};
+  for (int i = 0; i < packs; ++i) sum += a[i] * b[i];
+  return SumOfLanes(sum);
+}
+
+/// gram = the rows of [A|Q]'[A|Q] that belong to A, upper triangle. The right-hand sides need not
+/// follow the coefficients.
+template <int kWidth, int kDimension>
+void BlockGram(const RowShape& shape, const RowBlock& block, double* gram) {
+  const int packs = block.stride / kPackLanes;
+  const RowPack* a = AsPacks(block.coefficients);
+  if constexpr (kWidth > 0) {
+    if (block.right_hand_sides == block.coefficients + kWidth * block.stride) {
+      AddGramPasses<0, kWidth, kWidth + kDimension>(a, packs, gram);
+      return;
+    }
+  }
+  const RowPack* q = AsPacks(block.right_hand_sides);
+  const int columns = shape.width + shape.dimension;
+  for (int j = 0; j < shape.width; ++j) {
+    double* row = gram + j * columns;
+    for (int k = j; k < shape.width; ++k) row[k] = Dot(a + j * packs, a + k * packs, packs);
+    for (int c = 0; c < shape.dimension; ++c) {
+      row[shape.width + c] = Dot(a + j * packs, q + c * packs, packs);
+    }
+  }
+}
+
+}  // namespace
+
+NormalBand::NormalBand(const RowShape& shape)
+    : shape_(shape),
+      band_(static_cast<std::size_t>(shape.num_columns) * shape.width, 0.0),
+      right_hand_side_(Points::Zero(shape.num_columns, shape.dimension)),
+      gram_(static_cast<std::size_t>(shape.width) * (shape.width + shape.dimension)) {}
+
+void NormalBand::Consume(const RowBlock& block) {
+  WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
+    BlockGram<width, dimension>(shape_, block, gram_.data());
+  });
+  const int width = shape_.width;
+  const int d = shape_.dimension;
+  for (int j = 0; j < width; ++j) {
+    const int column = WrappedColumn(block.first_column + j);
+    const double* row = gram_.data() + j * (width + d);
+    double* target = band_.data() + static_cast<std::size_t>(column) * width;
+    for (int k = j; k < width; ++k) target[k - j] += row[k];
+    double* right = right_hand_side_.data() + static_cast<std::size_t>(column) * d;
+    for (int c = 0; c < d; ++c) right[c] += row[width + c];
+  }
+  const RowPack* q = AsPacks(block.right_hand_sides);
+  const int packs = block.stride / kPackLanes;
+  squared_norm_of_data_ += Dot(q, q, d * packs);
+}
+
+NormalBand NormalBand::FromRows(const RowSource& source) {
+  NormalBand matrix(source.shape());
+  source.Stream(&matrix);
+  return matrix;
+}
+
+int NormalBand::WrappedColumn(int column) const {
+  return column < shape_.num_columns ? column : column % shape_.num_columns;
+}
+
+void NormalBand::MultiplyRow(int j, const double* v, double* product) const {
+  const int d = shape_.dimension;
+  const int n = shape_.num_columns;
+  double* target = product + static_cast<std::size_t>(j) * d;
+  std::fill_n(target, d, 0.0);
+  const auto add = [&](int row, int k, int column) {
+    const double entry = band_[static_cast<std::size_t>(row) * shape_.width + k];
+    const double* source = v + static_cast<std::size_t>(column) * d;
+    for (int c = 0; c < d; ++c) target[c] += entry * source[c];
+  };
+  for (int k = shape_.width - 1; k > 0; --k) {
+    if (j - k < 0 && !shape_.cyclic) continue;
+    const int before = ((j - k) % n + n) % n;
+    add(before, k, before);
+  }
+  for (int k = 0; k < shape_.width; ++k) {
+    if (j + k >= n && !shape_.cyclic) break;
+    add(j, k, (j + k) % n);
+  }
+}
+
+template <int kWidth, int kDimension>
+void NormalBand::MultiplyInside(int begin, int end, const double* v, double* product) const {
+  const int width = kWidth > 0 ? kWidth : shape_.width;
+  const int d = kWidth > 0 ? kDimension : shape_.dimension;
+  for (int j = begin; j < end; ++j) {
+    const double* entry = band_.data() + static_cast<std::size_t>(j) * width;
+    const double* near = v + static_cast<std::size_t>(j) * d;
+    for (int c = 0; c < d; ++c) {
+      double sum = 0.0;
+      for (int k = width - 1; k > 0; --k) sum += entry[k - k * width] * near[c - k * d];
+      for (int k = 0; k < width; ++k) sum += entry[k] * near[k * d + c];
+      product[static_cast<std::size_t>(j) * d + c] = sum;
+    }
+  }
+}
+
+void NormalBand::Multiply(const double* v, double* product) const {
+  const int n = shape_.num_columns;
+  const int inside_begin = std::min(std::max(shape_.width - 1, 0), n);
+  const int inside_end = std::max(inside_begin, n - shape_.width + 1);
+  for (int j = 0; j < inside_begin; ++j) MultiplyRow(j, v, product);
+  WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
+    MultiplyInside<width, dimension>(inside_begin, inside_end, v, product);
+  });
+  for (int j = inside_end; j < n; ++j) MultiplyRow(j, v, product);
+}
+
+void NormalBand::NormalResidual(const double* control_points, double* residual) const {
+  Multiply(control_points, residual);
+  const double* right = right_hand_side_.data();
+  for (Eigen::Index k = 0; k < right_hand_side_.size(); ++k) residual[k] = right[k] - residual[k];
+}
+
+template <typename Visitor>
+void NormalBand::VisitUpperEntries(const Visitor& visit) const {
+  const int n = shape_.num_columns;
+  for (int j = 0; j < n; ++j) {
+    for (int k = 0; k < shape_.width && (shape_.cyclic || j + k < n); ++k) {
+      visit(j, k, WrappedColumn(j + k), band_[static_cast<std::size_t>(j) * shape_.width + k]);
+    }
+  }
+}
+
+std::vector<double> NormalBand::Diagonal() const {
+  std::vector<double> diagonal(shape_.num_columns, 0.0);
+  VisitUpperEntries([&](int row, int k, int column, double entry) {
+    if (row == column) diagonal[row] += k == 0 ? entry : 2.0 * entry;
+  });
+  return diagonal;
+}
+
+std::vector<double> NormalBand::AbsoluteRowSums() const {
+  std::vector<double> sums(shape_.num_columns, 0.0);
+  if (shape_.cyclic && shape_.num_columns < 2 * shape_.width - 1) {
+    // Entries on one place add before their absolute value is taken.
+    const Eigen::VectorXd dense = ToDense().cwiseAbs().rowwise().sum();
+    std::copy_n(dense.data(), sums.size(), sums.begin());
+    return sums;
+  }
+  VisitUpperEntries([&](int row, int k, int column, double entry) {
+    sums[row] += std::abs(entry);
+    if (k > 0) sums[column] += std::abs(entry);
+  });
+  return sums;
+}
+
+Eigen::MatrixXd NormalBand::ToDense() const {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(shape_.num_columns, shape_.num_columns);
+  VisitUpperEntries([&](int row, int k, int column, double entry) {
+    dense(row, column) += entry;
+    if (k > 0) dense(column, row) += entry;
+  });
+  return dense;
+}
+
+}  // namespace batten

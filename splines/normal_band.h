@@ -1,0 +1,61 @@
+#ifndef BATTEN_SPLINES_NORMAL_BAND_H_
+#define BATTEN_SPLINES_NORMAL_BAND_H_
+
+#include <vector>
+
+#include "splines/row_block.h"
+
+namespace batten {
+
+/// N = A'A in its band and B = A'Q, summed up in one pass over the rows. E = ||A P - Q||^2 has
+/// gradient 2 (N P - B) and Hessian 2 N, for each coordinate alike.
+///
+/// Entry band[j * width + k], k = 0..width-1, stands for N(j, j + k) and N(j + k, j), column
+/// indices modulo n where cyclic. With n < 2 width - 1 several entries fall on one place of N:
+/// they add (k > 0 with j + k = j modulo n counts twice on the diagonal).
+class NormalBand : public RowConsumer {
+ public:
+  explicit NormalBand(const RowShape& shape);  ///< All zero.
+  void Consume(const RowBlock& block) override;
+  /// Zero, then one pass over `source`.
+  static NormalBand FromRows(const RowSource& source);
+
+  int size() const { return shape_.num_columns; }  // n
+  int width() const { return shape_.width; }
+  int dimension() const { return shape_.dimension; }
+  bool cyclic() const { return shape_.cyclic; }
+  const std::vector<double>& band() const { return band_; }
+  std::vector<double>& band() { return band_; }
+  const Points& right_hand_side() const { return right_hand_side_; }  // B, n x d
+  double squared_norm_of_data() const { return squared_norm_of_data_; }  // ||Q||^2
+
+  /// product = N V, n x d row-major each; must not overlap.
+  void Multiply(const double* v, double* product) const;
+  /// residual = B - N P: half the negative gradient.
+  void NormalResidual(const double* control_points, double* residual) const;
+  std::vector<double> Diagonal() const;
+  /// Row sums of |N|: by Gershgorin and for a diagonal step rule.
+  std::vector<double> AbsoluteRowSums() const;
+  Eigen::MatrixXd ToDense() const;
+
+ private:
+  int WrappedColumn(int column) const;
+  /// Row j of the product, any j.
+  void MultiplyRow(int j, const double* v, double* product) const;
+  /// Rows whose entries do not leave 0..n-1; kWidth < 0 takes width and dimension from the shape.
+  template <int kWidth, int kDimension>
+  void MultiplyInside(int begin, int end, const double* v, double* product) const;
+  /// visit(row, k, column, entry) for every entry of the band that stands for one of N.
+  template <typename Visitor>
+  void VisitUpperEntries(const Visitor& visit) const;
+
+  RowShape shape_;
+  std::vector<double> band_;
+  Points right_hand_side_;
+  double squared_norm_of_data_ = 0.0;
+  std::vector<double> gram_;  // width x (width + dimension) of the block being consumed
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_SPLINES_NORMAL_BAND_H_

@@ -1,0 +1,105 @@
+#include "splines/parameterization.h"
+
+#include <cmath>
+#include <vector>
+
+namespace batten {
+namespace {
+
+constexpr Parameterization kAllRules[] = {
+    Parameterization::kUniform, Parameterization::kChordLength, Parameterization::kCentripetal};
+
+/// Lengths of the m - 1 chords (closed: m), in units of a power of two near the largest coordinate
+/// difference: squares then cannot overflow, and scaling the points by a power of two changes no
+/// bit of the result, also of roots. Empty with a sentence in `error` if there is no length.
+std::vector<double> ChordLengths(bool closed, const Points& points, std::string* error) {
+  const Eigen::Index m = points.rows();
+  if (points.cols() == 0) {
+    *error = "the points have no coordinates, chords have no length; use uniform";
+    return {};
+  }
+  for (Eigen::Index i = 0; i < m; ++i) {
+    if (!points.row(i).allFinite()) {
+      *error = "point " + std::to_string(i) + " is not finite, no chord can be measured to it";
+      return {};
+    }
+  }
+  const double extent = (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+  if (extent == 0.0) {
+    *error = "all " + std::to_string(m) + " points are equal, chords have no length; use uniform";
+    return {};
+  }
+  if (!std::isfinite(extent)) {
+    *error = "the points are farther apart than a double can hold; scale them down";
+    return {};
+  }
+  const int exponent = std::ilogb(extent);
+  std::vector<double> lengths(closed ? m : m - 1);
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(lengths.size()); ++i) {
+    double sum = 0.0;
+    for (Eigen::Index c = 0; c < points.cols(); ++c) {
+      const double step = std::scalbn(points((i + 1) % m, c) - points(i, c), -exponent);
+      sum += step * step;
+    }
+    lengths[i] = std::sqrt(sum);
+  }
+  return lengths;
+}
+
+}  // namespace
+
+const char* ToString(Parameterization rule) {
+  switch (rule) {
+    case Parameterization::kUniform:
+      return "uniform";
+    case Parameterization::kChordLength:
+      return "chord_length";
+    case Parameterization::kCentripetal:
+      return "centripetal";
+  }
+  return "unknown";
+}
+
+bool FromString(const std::string& text, Parameterization* rule) {
+  for (const Parameterization known : kAllRules) {
+    if (text == ToString(known)) {
+      *rule = known;
+      return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed,
+                                            const Points& points, std::string* error) {
+  std::string unread;
+  if (error == nullptr) error = &unread;
+  const Eigen::Index m = points.rows();
+  const bool uniform = rule == Parameterization::kUniform;
+  const int fewest = closed && uniform ? 1 : 2;
+  if (m < fewest) {
+    *error = "there are " + std::to_string(m) + " points, " + ToString(rule) +
+             " parameters need at least " + std::to_string(fewest);
+    return std::nullopt;
+  }
+  Eigen::VectorXd parameters(m);
+  if (uniform) {
+    const double num_steps = static_cast<double>(closed ? m : m - 1);
+    for (Eigen::Index i = 0; i < m; ++i) parameters[i] = static_cast<double>(i) / num_steps;
+    return parameters;
+  }
+  const std::vector<double> steps = ChordLengths(closed, points, error);
+  if (steps.empty()) return std::nullopt;
+  // Summed in long double: a million plain additions would cost up to six digits.
+  std::vector<long double> sums(steps.size() + 1, 0.0L);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    sums[i + 1] =
+        sums[i] + (rule == Parameterization::kCentripetal ? std::sqrt(steps[i]) : steps[i]);
+  }
+  for (Eigen::Index i = 0; i < m; ++i) {
+    parameters[i] = static_cast<double>(sums[i] / sums.back());
+  }
+  return parameters;
+}
+
+}  // namespace batten

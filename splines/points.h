@@ -1,0 +1,17 @@
+#ifndef BATTEN_SPLINES_POINTS_H_
+#define BATTEN_SPLINES_POINTS_H_
+
+#include <Eigen/Core>
+
+namespace batten {
+
+/// A list of points, one a row; row-major, so that point i stands at data()[i * cols()].
+using Points = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+inline constexpr int kMaxDegree = 9;
+inline constexpr int kMaxOrder = kMaxDegree + 1;
+inline constexpr int kMaxDimension = 4;
+
+}  // namespace batten
+
+#endif  // BATTEN_SPLINES_POINTS_H_

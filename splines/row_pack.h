@@ -1,0 +1,47 @@
+#ifndef BATTEN_SPLINES_ROW_PACK_H_
+#define BATTEN_SPLINES_ROW_PACK_H_
+
+#include <type_traits>
+
+#include "splines/row_block.h"
+
+namespace batten {
+
+/// Two doubles computed with as one: the widest register every x86-64 has. A kRowPack of rows is
+/// two of them; loops over 32-byte vectors are lowered through the stack and ran slower.
+/// Internal to splines/: may alias the arrays of doubles it is read from.
+typedef double RowPack __attribute__((vector_size(16), may_alias));
+inline constexpr int kPackLanes = 2;
+static_assert(kRowPack % kPackLanes == 0, "strides are whole packs");
+
+inline const RowPack* AsPacks(const double* aligned) {
+  return reinterpret_cast<const RowPack*>(aligned);
+}
+inline RowPack* AsPacks(double* aligned) { return reinterpret_cast<RowPack*>(aligned); }
+inline RowPack Broadcast(double value) { return RowPack{value, value}; }
+inline double SumOfLanes(RowPack pack) { return pack[0] + pack[1]; }
+
+/// A whole number of packs that holds `num_rows`.
+inline int PaddedRows(int num_rows) { return (num_rows + kRowPack - 1) / kRowPack * kRowPack; }
+
+/// Calls kernel(width, dimension) with both as std::integral_constant where loops of fixed length
+/// pay, with -1 for both elsewhere: the kernel then takes them from the shape.
+template <typename Kernel>
+auto WithFixedShape(int width, int dimension, const Kernel& kernel) {
+  using std::integral_constant;
+  const auto with_width = [&](auto fixed_width) {
+    if (dimension == 1) return kernel(fixed_width, integral_constant<int, 1>());
+    if (dimension == 2) return kernel(fixed_width, integral_constant<int, 2>());
+    if (dimension == 3) return kernel(fixed_width, integral_constant<int, 3>());
+    return kernel(integral_constant<int, -1>(), integral_constant<int, -1>());
+  };
+  if (width == 2) return with_width(integral_constant<int, 2>());
+  if (width == 3) return with_width(integral_constant<int, 3>());
+  if (width == 4) return with_width(integral_constant<int, 4>());
+  if (width == 6) return with_width(integral_constant<int, 6>());
+  return kernel(integral_constant<int, -1>(), integral_constant<int, -1>());
+}
+
+}  // namespace batten
+
+#endif  // BATTEN_SPLINES_ROW_PACK_H_
