@@ -256,29 +256,29 @@ class FunctorKernel {
     return rho[0];
   }
 
-  void FillRows(int span, int begin, int count, int stride, double root_factor,
+  __attribute__((flatten)) void FillRows(int span, int begin, int count, int stride, double root_factor,
                 double* coefficients, double* right_hand_sides) const {
     using Form = AffineForm<Pack, kOrderStorage>;
-    Form variables[kOrderStorage][kDimensionStorage];
-    const Form* points[kOrderStorage];
-    for (int j = 0; j < order(); ++j) {
-      for (int c = 0; c < dimension(); ++c) variables[j][c] = Form::Variable(j);
-      points[j] = variables[j];
-    }
     // A copy of the knots that matter, so that the compiler sees that stores do not change them.
     double knots[2 * kOrderStorage];
     const int p = order() - 1;
     std::copy_n(basis_.knots().data() + span + 1 - p, 2 * p, knots);
+    Form variables[kOrderStorage];
+    const Form* points[kOrderStorage];
+    for (int j = 0; j < order(); ++j) {
+      variables[j] = Form::Variable(j);
+      points[j] = &variables[j];
+    }
     for (int first = 0; first < stride; first += kRowPack) {
-      const Site<Pack, P, D, Functor::kDerivatives> site =
-          MakePackSite(knots, p - 1, begin + first, begin + count - 1);
-      Form results[kMaxDimension];
-      functor_(site, points, results);
-      for (int j = 0; j < order(); ++j) {
-        (root_factor * results[0].coefficient[j]).Store(coefficients + j * stride + first);
-      }
+      PackSite site = MakePackSite(knots, p - 1, begin + first, begin + count - 1);
+      Form result;
       for (int c = 0; c < dimension(); ++c) {
-        (-root_factor * results[c].constant).Store(right_hand_sides + c * stride + first);
+        site.mutable_point()[0] = PackPoint(begin + first, begin + count - 1, c);
+        functor_(site, points, &result);
+        (-root_factor * result.constant).Store(right_hand_sides + c * stride + first);
+      }
+      for (int j = 0; j < order(); ++j) {
+        (root_factor * result.coefficient[j]).Store(coefficients + j * stride + first);
       }
     }
     for (int i = count; i < stride; ++i) {
@@ -287,25 +287,35 @@ class FunctorKernel {
     }
   }
 
-  /// Sites first..first+kRowPack-1; those past `last` repeat it.
-  Site<Pack, P, D, Functor::kDerivatives> MakePackSite(const double* knots, int span, int first,
-                                                       int last) const {
-    Site<Pack, P, D, Functor::kDerivatives> site(basis_.degree(), dimension());
+  /// A curve with one coordinate: rows are alike for all of them.
+  using PackSite = Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives>;
+
+  /// Entries of the sites first..first+kRowPack-1; those past `last` repeat it.
+  Pack PackOf(const double* source, std::ptrdiff_t step, int first,
+                                   int last) const {
+    if (sites_.order.empty() && first + kRowPack - 1 <= last) {
+      return Pack::Gather(source + first * step, step);
+    }
     std::ptrdiff_t item[kRowPack];
     for (int i = 0; i < kRowPack; ++i) item[i] = sites_.item(std::min(first + i, last));
+    return Pack::Gather(source, item, step);
+  }
+
+  Pack PackPoint(int first, int last, int c) const {
+    if (sites_.points == nullptr) return Pack(0.0);
+    return (PackOf(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
+           setting_.scale;
+  }
+
+  PackSite MakePackSite(const double* knots, int span, int first,
+                                             int last) const {
+    PackSite site(basis_.degree(), 1);
     EvaluateBasisDerivatives<P>(basis_.degree(), knots, span,
-                                Pack::Gather(sites_.parameters, item, 1), Functor::kDerivatives,
+                                PackOf(sites_.parameters, 1, first, last), Functor::kDerivatives,
                                 site.mutable_basis());
-    for (int c = 0; c < dimension(); ++c) {
-      site.mutable_point()[c] =
-          sites_.points == nullptr
-              ? Pack(0.0)
-              : (Pack::Gather(sites_.points + c, item, dimension()) - setting_.center[c]) *
-                    setting_.scale;
-    }
     Pack root(1.0);
     if (sites_.weights != nullptr) {
-      root = Pack::Gather(sites_.weights, item, 1);
+      root = PackOf(sites_.weights, 1, first, last);
       for (int i = 0; i < kRowPack; ++i) root.v[i] = std::sqrt(root.v[i]);
     }
     site.set_root_weight(root);

@@ -1,6 +1,7 @@
 #ifndef BATTEN_COST_FUNCTIONS_SITE_H_
 #define BATTEN_COST_FUNCTIONS_SITE_H_
 
+#include "cost_functions/affine_form.h"
 #include "splines/points.h"
 
 namespace batten {
@@ -33,6 +34,13 @@ class Site {
     T sum = values[0] * control_points[0][coordinate];
     for (int j = 1; j <= degree(); ++j) sum += values[j] * control_points[j][coordinate];
     return sum;
+  }
+  /// The same when rows are compiled: control point j is the variable j itself then, and products
+  /// with the zeros and ones of its form would be most of the work.
+  template <int kVariables>
+  AffineForm<Real, kVariables> Derivative(
+      int k, const AffineForm<Real, kVariables>* const* /*control_points*/, int /*coordinate*/) const {
+    return AffineForm<Real, kVariables>::Combination(basis_ + k * (degree() + 1), degree() + 1);
   }
 
   Real* mutable_basis() { return basis_; }

@@ -1,13 +1,14 @@
 #ifndef BATTEN_EXPERIMENTS_AUDIT_H_
 #define BATTEN_EXPERIMENTS_AUDIT_H_
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace batten {
 
-/// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code with
-/// the folder splines/.
+/// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code
+/// with the folder splines/.
 struct AuditedFit {
   int degree = 0;
   bool periodic = false;
@@ -24,9 +25,13 @@ struct AuditedFit {
 struct AuditReport {
   double energy = 0.0;         // sum of w |C(t) - Q|^2
   double gradient_norm = 0.0;  // of E with respect to the control points
-  double gradient_floor = 0.0; // what rounding of the double control points alone is worth in |g|
-  double rms_distance = 0.0;   // over the points, at their parameters, not weighted
+  double energy_floor = 0.0;   // what rounding control points and data to double is worth in E,
+  double gradient_floor =
+      0.0;                    // and in |g|: one rounding of each number, all in the worst direction
+  double rms_distance = 0.0;  // over the points, at their parameters, not weighted
   double max_distance = 0.0;
+  int num_points = 0;     // m
+  int most_summands = 0;  // largest number of points that one control point moves
 };
 AuditReport Audit(const AuditedFit& fit);
 
@@ -34,9 +39,9 @@ AuditReport Audit(const AuditedFit& fit);
 struct Claim {
   double energy = 0.0;
   double gradient_norm = 0.0;
-  bool minimum = false;            // it says it reached gradient_target or the rounding floor
+  bool minimum = false;  // it says it reached gradient_target or the rounding floor
   double gradient_target = 0.0;
-  double start_energy = 0.0;
+  double start_energy = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
 };
 
 struct Verdict {

@@ -1,6 +1,7 @@
 #ifndef BATTEN_EXPERIMENTS_FIT_REPORT_H_
 #define BATTEN_EXPERIMENTS_FIT_REPORT_H_
 
+#include <ostream>
 #include <string>
 
 #include "experiments/audit.h"
@@ -11,13 +12,16 @@ namespace batten {
 
 /// A run's end measured: distances, foot points and audit, all off the clock.
 struct FitReport {
-  double rms = 0.0;                    // distances at the parameters
+  double rms = 0.0;  // distances at the parameters
   double max = 0.0;
-  double rms_orthogonal = 0.0;         // at plain closest points (splines/closest_point.h)
+  double rms_orthogonal = 0.0;  // at plain closest points (splines/closest_point.h)
   double max_orthogonal = 0.0;
   double energy_at_foot_points = 0.0;  // sum of w |C(foot) - Q|^2
+  /// False where the audit does not apply: it knows the interpolation term without loss, on
+  /// unconstrained control points. `audit` and `verdict` then say nothing.
+  bool audited = false;
   AuditReport audit;
-  Verdict verdict;                     // of the run's claim against the audit
+  Verdict verdict;  // of the run's claim against the audit
 };
 FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec& spec);
 

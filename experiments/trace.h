@@ -19,16 +19,17 @@ struct Counts {
 struct TraceRow {
   int iteration = 0;
   Counts counts;
-  double seconds = 0.0;      ///< Solver's wall time since the run began, set-up included.
+  double seconds = 0.0;  ///< Solver's wall time since the run began, set-up included.
   double cpu_seconds = 0.0;
   double energy = 0.0;
   double gradient_norm = 0.0;
-  double step_norm = 0.0;    ///< Largest move of a control point (of a variable, if no curve fit).
+  double step_norm = 0.0;  ///< Largest move of a control point (of a variable, if no curve fit).
   std::vector<double> term_energies;  ///< Empty with a single term: it is the energy.
 };
 
 /// CSV with the header of docs/formats.md; numbers read back to the same double.
-std::string TraceCsv(const std::vector<TraceRow>& trace, const std::vector<std::string>& term_names);
+std::string TraceCsv(const std::vector<TraceRow>& trace,
+                     const std::vector<std::string>& term_names);
 
 }  // namespace batten
 

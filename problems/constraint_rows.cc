@@ -139,11 +139,11 @@ bool ConstraintRows::Add(int index, std::string* error) {
 }
 
 void ConstraintRows::AppendRow(int index, const Combination& left,
-                           std::vector<std::pair<int, double>> used) {
-  const auto pivot = std::max_element(
-      left.entries().begin(), left.entries().end(), [](const auto& a, const auto& b) {
-        return std::abs(a.second.value) < std::abs(b.second.value);
-      });
+                               std::vector<std::pair<int, double>> used) {
+  const auto pivot = std::max_element(left.entries().begin(), left.entries().end(),
+                                      [](const auto& a, const auto& b) {
+                                        return std::abs(a.second.value) < std::abs(b.second.value);
+                                      });
   Row row;
   row.constraint = index;
   row.pivot = pivot->first;

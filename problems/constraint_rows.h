@@ -20,9 +20,9 @@ class ConstraintRows {
     int pivot = 0;
     std::vector<std::pair<int, double>> tail;
     double value = 0.0;
-    double noise = 0.0;        // size of the roundings in tail
-    double value_noise = 0.0;  // and in value
-    double divisor = 1.0;      // the pivot's coefficient before
+    double noise = 0.0;                        // size of the roundings in tail
+    double value_noise = 0.0;                  // and in value
+    double divisor = 1.0;                      // the pivot's coefficient before
     std::vector<std::pair<int, double>> used;  // earlier rows put in, and their factors
   };
 

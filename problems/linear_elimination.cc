@@ -90,7 +90,6 @@ bool LinearElimination::ForPoints(int begin, int num_points, int dimension,
   }
   const int end = begin + num_points * dimension;
   CHECK(begin >= 0 && end <= z_.rows());
-  // free_ ascends: only as many variables outside as there are can stay outside.
   std::vector<int> point_column(z_.cols(), -1);  // of the free variables with coordinate 0
   int num_free_points = 0;
   int num_inside = 0;
@@ -99,6 +98,7 @@ bool LinearElimination::ForPoints(int begin, int num_points, int dimension,
     ++num_inside;
     if ((free_[k] - begin) % dimension == 0) point_column[k] = num_free_points++;
   }
+  // All variables outside must stay as they are.
   const int num_outside = static_cast<int>(z_.rows()) - (end - begin);
   if (static_cast<int>(free_.size()) - num_inside != num_outside) return false;
 

@@ -50,6 +50,12 @@ class Objective {
   /// The structure geometric methods ask for; null where not all of E is compiled rows.
   CurveView* curve_view() { return view_.get(); }
 
+  /// Counts an evaluation at x that a library does itself, from problem().terms(). False: it must
+  /// not be done, as after kStop.
+  bool Allow(Evaluation kind, const Eigen::VectorXd* x) {
+    return monitor_ == nullptr || monitor_->Allow(kind, x);
+  }
+
   // Not counted: for run control and reports.
   /// Size below which |g| is noise: 4 eps times the norm of sum |J|'(|J||x| + |r|), doubled as the
   /// gradient of E without factor 1/2 is.
@@ -57,9 +63,6 @@ class Objective {
   std::vector<double> TermEnergies(const Eigen::VectorXd& x) const;
 
  private:
-  bool Allow(Evaluation kind, const Eigen::VectorXd* x) {
-    return monitor_ == nullptr || monitor_->Allow(kind, x);
-  }
   Status EvaluateTerms(const Eigen::VectorXd& all, double* energy, Eigen::VectorXd* gradient) const;
   Status EvaluateRows(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient) const;
 

@@ -16,8 +16,10 @@ constexpr int kRowsPerFold = 2 * kMaxRowsPerBlock;
 /// add squares that underflow.
 constexpr double kDecayed = 1e-140;
 
+}  // namespace
+
 /// Any rows x columns, packed; all zero at first.
-class RowBuffer {
+class BandedQr::RowBuffer {
  public:
   RowBuffer(int num_rows, int num_columns)
       : stride_(PaddedRows(num_rows)), data_(static_cast<std::size_t>(stride_) * num_columns) {}
@@ -40,8 +42,6 @@ class RowBuffer {
   int stride_;
   std::vector<double> data_;
 };
-
-}  // namespace
 
 BandedQr::BandedQr(const RowShape& shape)
     : shape_(shape),
@@ -100,14 +100,14 @@ void BandedQr::Finish() {
   FoldPending();
   if (num_border_ > 0) FoldWrapped();
   double smallest = 0.0;
-  double largest = 0.0;
+  largest_ = 0.0;
   for (int j = 0; j < shape_.num_columns; ++j) {
     const double size = std::abs(DiagonalEntry(j));
     smallest = j == 0 ? size : std::min(smallest, size);
-    largest = std::max(largest, size);
-    if (!std::isfinite(size)) largest = std::nan("");
+    // Kept once it is not a number.
+    if (!(size <= largest_)) largest_ = std::isfinite(size) ? size : std::nan("");
   }
-  ratio_ = shape_.num_columns == 0 ? 1.0 : largest == 0.0 ? 0.0 : smallest / largest;
+  ratio_ = shape_.num_columns == 0 ? 1.0 : largest_ == 0.0 ? 0.0 : smallest / largest_;
   full_rank_ = ratio_ > kRankTolerance;
 }
 
@@ -143,3 +143,133 @@ void BandedQr::FoldWrapped() {
   }
   residual_ += FoldAny(size, d, last.packed(), dense_.data(), size + d);
 }
+
+void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last) {
+  const int size = 2 * num_border_;
+  const int d = shape_.dimension;
+  const int others = width_ - 1 + num_border_ + d;  // columns beside the one eliminated
+  // Columns: those of the window j..j + width - 1, the border, right-hand sides.
+  RowBuffer carried(num_border_, 1 + others);
+  for (int i = 0; i < num_border_; ++i) {
+    const double* row = reordered.data() + i * (size + d);
+    for (int k = i; k < size; ++k) carried(i, k < num_border_ ? k : k + 1) = row[k - i];
+    for (int c = 0; c < d; ++c) carried(i, width_ + num_border_ + c) = row[size + c];
+  }
+  double scale = 0.0;
+  for (const double entry : triangle_) scale = std::max(scale, std::abs(entry));
+  std::vector<double> row(1 + others);
+  double* const border = row.data() + width_;
+  for (int j = 0; j < num_swept_; ++j) {
+    if (carried.LargestInColumns(num_border_) <= kDecayed * scale) break;
+    double* const entry = triangle_.data() + static_cast<std::size_t>(j) * row_size_;
+    std::copy_n(entry, width_, row.begin());
+    std::fill_n(border, num_border_, 0.0);
+    std::copy_n(entry + width_, d, border + num_border_);
+    FoldAny(1, others, carried.packed(), row.data(), 1 + others);
+    std::copy_n(row.begin(), width_, entry);
+    std::copy_n(border + num_border_, d, entry + width_);
+    for (int b = 0; b < num_border_; ++b) {
+      border_.push_back(std::abs(border[b]) > kDecayed * scale ? border[b] : 0.0);
+    }
+    carried.ShiftColumns(width_);
+    num_bordered_ = j + 1;
+  }
+  const bool decayed = num_bordered_ < num_swept_;
+  for (int i = 0; i < num_border_; ++i) {
+    for (int k = 0; k < num_border_; ++k) {
+      (*last)(i, k) = decayed ? 0.0 : carried(i, k);
+      (*last)(i, num_border_ + k) = carried(i, width_ + k);
+    }
+    for (int c = 0; c < d; ++c) (*last)(i, size + c) = carried(i, width_ + num_border_ + c);
+  }
+}
+
+double BandedQr::DiagonalEntry(int j) const {
+  const int size = 2 * num_border_;
+  return num_border_ > 0 && j >= num_swept_
+             ? dense_[(j - num_swept_) * (size + shape_.dimension)]
+             : triangle_[static_cast<std::size_t>(j) * row_size_];
+}
+
+template <typename Visitor>
+void BandedQr::VisitRow(int j, const Visitor& visit) const {
+  if (num_border_ > 0 && j >= num_swept_) {
+    const int size = 2 * num_border_;
+    const int i = j - num_swept_;
+    const double* row = dense_.data() + i * (size + shape_.dimension);
+    for (int k = 1; i + k < size; ++k) visit(j + k, row[k]);
+    return;
+  }
+  const double* row = triangle_.data() + static_cast<std::size_t>(j) * row_size_;
+  const int end = std::min(width_, shape_.num_columns - j);
+  for (int k = 1; k < end; ++k) visit(j + k, row[k]);
+  if (j >= num_bordered_) return;
+  const double* border = border_.data() + static_cast<std::size_t>(j) * num_border_;
+  for (int b = 0; b < num_border_; ++b) visit(shape_.num_columns - num_border_ + b, border[b]);
+}
+
+const double* BandedQr::RightHandSide(int j) const {
+  const int size = 2 * num_border_;
+  return num_border_ > 0 && j >= num_swept_
+             ? dense_.data() + (j - num_swept_) * (size + shape_.dimension) + size
+             : triangle_.data() + static_cast<std::size_t>(j) * row_size_ + width_;
+}
+
+void BandedQr::Solve(Points* control_points) const {
+  *control_points = TriangleRightHandSide();
+  SolveTriangle(shape_.dimension, control_points->data());
+}
+
+Points BandedQr::TriangleRightHandSide() const {
+  Points right(shape_.num_columns, shape_.dimension);
+  for (int j = 0; j < shape_.num_columns; ++j) {
+    std::copy_n(RightHandSide(j), shape_.dimension, right.data() + j * shape_.dimension);
+  }
+  return right;
+}
+
+void BandedQr::SolveTriangle(int dimension, double* x) const {
+  for (int j = shape_.num_columns - 1; j >= 0; --j) {
+    double* const target = x + static_cast<std::size_t>(j) * dimension;
+    VisitRow(j, [&](int column, double entry) {
+      const double* source = x + static_cast<std::size_t>(column) * dimension;
+      for (int c = 0; c < dimension; ++c) target[c] -= entry * source[c];
+    });
+    for (int c = 0; c < dimension; ++c) target[c] /= DiagonalEntry(j);
+  }
+}
+
+void BandedQr::SolveTransposedTriangle(int dimension, double* x) const {
+  for (int j = 0; j < shape_.num_columns; ++j) {
+    double* const source = x + static_cast<std::size_t>(j) * dimension;
+    for (int c = 0; c < dimension; ++c) source[c] /= DiagonalEntry(j);
+    VisitRow(j, [&](int column, double entry) {
+      double* target = x + static_cast<std::size_t>(column) * dimension;
+      for (int c = 0; c < dimension; ++c) target[c] -= entry * source[c];
+    });
+  }
+}
+
+void BandedQr::MultiplyTriangle(int dimension, double* x) const {
+  for (int j = 0; j < shape_.num_columns; ++j) {
+    double* const target = x + static_cast<std::size_t>(j) * dimension;
+    for (int c = 0; c < dimension; ++c) target[c] *= DiagonalEntry(j);
+    VisitRow(j, [&](int column, double entry) {
+      const double* source = x + static_cast<std::size_t>(column) * dimension;
+      for (int c = 0; c < dimension; ++c) target[c] += entry * source[c];
+    });
+  }
+}
+
+void BandedQr::MultiplyTransposedTriangle(int dimension, double* x) const {
+  for (int j = shape_.num_columns - 1; j >= 0; --j) {
+    double* const source = x + static_cast<std::size_t>(j) * dimension;
+    VisitRow(j, [&](int column, double entry) {
+      double* target = x + static_cast<std::size_t>(column) * dimension;
+      for (int c = 0; c < dimension; ++c) target[c] += entry * source[c];
+    });
+    for (int c = 0; c < dimension; ++c) source[c] *= DiagonalEntry(j);
+  }
+}
+
+}  // namespace batten

@@ -10,6 +10,7 @@ namespace batten {
 namespace {
 
 constexpr std::size_t kAlignment = 64;  // a cache line
+constexpr int kLineSize = kAlignment / sizeof(double);
 
 double* AllocateZeroed(std::size_t size) {
   const std::size_t bytes = std::max<std::size_t>(size, 1) * sizeof(double);
@@ -137,8 +138,20 @@ RowBlock BandedRows::block(std::size_t index) const {
   return block;
 }
 
+RowBlock BandedRows::BlockAndPrefetch(std::size_t index) const {
+  if (index + 1 < blocks_.size()) {
+    const Entry& next = blocks_[index + 1];
+    const double* const data = data_.get() + next.begin;
+    const int size = next.stride * (shape_.width + shape_.dimension);
+    for (int k = 0; k < size; k += kLineSize) __builtin_prefetch(data + k);
+  }
+  return block(index);
+}
+
 void BandedRows::Stream(RowConsumer* consumer) const {
-  for (std::size_t index = 0; index < blocks_.size(); ++index) consumer->Consume(block(index));
+  for (std::size_t index = 0; index < blocks_.size(); ++index) {
+    consumer->Consume(BlockAndPrefetch(index));
+  }
 }
 
 }  // namespace batten

@@ -22,6 +22,9 @@ class BandedRows : public RowSource {
   std::size_t num_blocks() const { return blocks_.size(); }
   /// Row numbers: order of Stream.
   RowBlock block(std::size_t index) const;
+  /// As block(); starts to load the one after it. For passes over all rows: a block's columns are
+  /// too short for the processor to see that they will be read on.
+  RowBlock BlockAndPrefetch(std::size_t index) const;
 
   /// All vectors below: control points n x d and gradients n x d row-major, residuals in row order.
   /// ||A P - Q||^2; if `gradient` is not null, adds 2 A'(A P - Q) to it.
@@ -37,7 +40,8 @@ class BandedRows : public RowSource {
   void AddRoundingBound(const double* control_points, double* bound) const;
 
   /// The rows in other unknowns: P = offset + Z Y, Z n x n' sparse (a constraint's elimination).
-  /// Rows stay blocks of contiguous columns (modulo n' if cyclic), as wide as Z makes them.
+  /// Rows stay blocks of contiguous columns (modulo n' if cyclic): the width is that of the longest
+  /// among the blocks' shortest arcs of columns, and the order is that of the arcs' first columns.
   BandedRows Substitute(const Eigen::SparseMatrix<double, Eigen::RowMajor>& z,
                         const Points& offset) const;
 

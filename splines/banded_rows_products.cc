@@ -128,7 +128,7 @@ double EvaluateAll(const BandedRows& rows, const double* points, double* gradien
   std::vector<double> part(static_cast<std::size_t>(shape.width) * shape.dimension);
   CompensatedSum energy;
   for (std::size_t index = 0; index < rows.num_blocks(); ++index) {
-    const RowBlock block = rows.block(index);
+    const RowBlock block = rows.BlockAndPrefetch(index);
     const double* near = window.Gather(points, block.first_column);
     if (kGradient) std::fill(part.begin(), part.end(), 0.0);
     energy.Add(EvaluateBlock<kWidth, kDimension, kGradient, kWithData>(shape, block, near,
@@ -163,7 +163,7 @@ void BandedRows::Residuals(const double* control_points, double* residuals) cons
   const double* value = reinterpret_cast<const double*>(residual);
   const int d = shape_.dimension;
   for (std::size_t index = 0; index < num_blocks(); ++index) {
-    const RowBlock rows = block(index);
+    const RowBlock rows = BlockAndPrefetch(index);
     const double* near = window.Gather(control_points, rows.first_column);
     double* target = residuals + static_cast<std::size_t>(blocks_[index].first_row) * d;
     for (int c = 0; c < d; ++c) {
@@ -180,7 +180,7 @@ void BandedRows::AddTransposedProduct(const double* r, double* product) const {
   double* value = reinterpret_cast<double*>(coordinate);
   const int d = shape_.dimension;
   for (std::size_t index = 0; index < num_blocks(); ++index) {
-    const RowBlock rows = block(index);
+    const RowBlock rows = BlockAndPrefetch(index);
     const double* source = r + static_cast<std::size_t>(blocks_[index].first_row) * d;
     std::fill(part.begin(), part.end(), 0.0);
     for (int c = 0; c < d; ++c) {
@@ -197,7 +197,7 @@ void BandedRows::AddRoundingBound(const double* control_points, double* bound) c
   const int d = shape_.dimension;
   std::vector<double> part(static_cast<std::size_t>(shape_.width) * d);
   for (std::size_t index = 0; index < num_blocks(); ++index) {
-    const RowBlock rows = block(index);
+    const RowBlock rows = BlockAndPrefetch(index);
     const double* near = window.Gather(control_points, rows.first_column);
     std::fill(part.begin(), part.end(), 0.0);
     for (int c = 0; c < d; ++c) {

@@ -40,7 +40,9 @@ class BsplineBasis {
   /// Empty ones (repeated knots) are never returned by FindSpan.
   int first_span() const { return degree_; }
   int last_span() const { return degree_ + num_domain_spans() - 1; }
-  int num_domain_spans() const { return periodic_ ? num_control_points_ : num_control_points_ - degree_; }
+  int num_domain_spans() const {
+    return periodic_ ? num_control_points_ : num_control_points_ - degree_;
+  }
 
   /// The span of t. Open: t is clamped to the domain, and domain_end() belongs to the last
   /// non-empty span. Periodic: t must have passed Wrap(). For NaN some span, so that curves become
@@ -63,7 +65,9 @@ class BsplineBasis {
 
  private:
   BsplineBasis(int degree, bool periodic, std::vector<double> knots, int num_control_points)
-      : degree_(degree), periodic_(periodic), num_control_points_(num_control_points),
+      : degree_(degree),
+        periodic_(periodic),
+        num_control_points_(num_control_points),
         knots_(std::move(knots)) {}
 
   int degree_;

@@ -1,8 +1,8 @@
 #include "splines/bspline_curve.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "splines/basis_functions.h"
@@ -21,17 +21,26 @@ void Combine(const BsplineBasis& basis, const Points& control_points, int span,
   }
 }
 
+void RefuseNegative(int derivative) {
+  if (derivative >= 0) return;
+  throw std::logic_error("derivative is " + std::to_string(derivative) + ", must be >= 0");
+}
+
 }  // namespace
 
 BsplineCurve::BsplineCurve(BsplineBasis basis, Points control_points)
     : basis_(std::move(basis)), control_points_(std::move(control_points)) {
-  CHECK_EQ(control_points_.rows(), basis_.num_control_points());
-  CHECK_GE(control_points_.cols(), 1);
-  CHECK_LE(control_points_.cols(), kMaxDimension);
+  if (control_points_.rows() != basis_.num_control_points() || control_points_.cols() < 1 ||
+      control_points_.cols() > kMaxDimension) {
+    throw std::logic_error("control points are " + std::to_string(control_points_.rows()) + " x " +
+                           std::to_string(control_points_.cols()) + ", must be " +
+                           std::to_string(basis_.num_control_points()) + " x 1 to " +
+                           std::to_string(kMaxDimension));
+  }
 }
 
 void BsplineCurve::Evaluate(double t, int derivative, double* result) const {
-  CHECK_GE(derivative, 0);
+  RefuseNegative(derivative);
   const int p = basis_.degree();
   if (derivative > p) {
     std::fill(result, result + dimension(), 0.0);
@@ -45,7 +54,7 @@ void BsplineCurve::Evaluate(double t, int derivative, double* result) const {
 }
 
 void BsplineCurve::EvaluateUpTo(double t, int max_derivative, double* result) const {
-  CHECK_GE(max_derivative, 0);
+  RefuseNegative(max_derivative);
   const int p = basis_.degree();
   const int d = dimension();
   t = basis_.Wrap(t);

@@ -21,8 +21,8 @@ class ClosestPoint {
  public:
   explicit ClosestPoint(const BsplineCurve& curve);  ///< Keeps a reference to `curve`.
   /// `point` has d coordinates. `start` (a parameter in the domain) competes with the samples'
-  /// best, so that the result is never farther than C(start), to rounding. A point or curve that is not
-  /// finite gives some parameter and a distance that is not finite.
+  /// best, so that the result is never farther than C(start), to rounding. A point or curve that is
+  /// not finite gives some parameter and a distance that is not finite.
   FootPoint Find(const double* point, double start) const;
 
  private:
@@ -37,7 +37,8 @@ class ClosestPoint {
   const BsplineCurve& curve_;
   std::vector<double> sample_parameters_;
   Points samples_;
-  std::vector<std::vector<Box>> levels_;  // levels_[0]: boxes of runs of samples; each next: of pairs
+  // levels_[0]: boxes of runs of samples; each next: of pairs.
+  std::vector<std::vector<Box>> levels_;
 };
 
 }  // namespace batten

@@ -27,12 +27,14 @@ std::vector<double> UniformKnots(int degree, int num_control_points, EndKnots en
 /// interpolation of the map i -> t_i. Floating: the same inner knots, end steps repeated outside.
 /// Periodic: the counterpart without ends, u_(p+j) = the periodic map i -> t_i, linear between
 /// integers, at i = j m / n, shifted by half a step for even degree, so that n = m gives knots at
-/// (odd p) or half way between (even p) the parameters, where the interpolation matrix is regular. The domain then is not
-/// [begin, end] but the turn from u_p on: parameters belong to it after BsplineBasis::Wrap().
-/// Knots that would coincide more than p times, parameters that decrease or leave [begin, end] and
-/// what UniformKnots refuses are a sentence in `error` (may be null) and an empty result.
+/// (odd p) or half way between (even p) the parameters, where the interpolation matrix is regular.
+/// The domain then is not [begin, end] but the turn from u_p on: parameters belong to it after
+/// BsplineBasis::Wrap(). Knots that would coincide more than p times, parameters that decrease or
+/// leave [begin, end] and what UniformKnots refuses are a sentence in `error` (may be null) and an
+/// empty result.
 std::vector<double> AveragedKnots(int degree, int num_control_points, EndKnots ends, double begin,
-                                  double end, const Eigen::VectorXd& parameters, std::string* error);
+                                  double end, const Eigen::VectorXd& parameters,
+                                  std::string* error);
 
 }  // namespace batten
 

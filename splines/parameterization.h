@@ -21,8 +21,8 @@ bool FromString(const std::string& text, Parameterization* rule);
 /// Nothing, with a sentence in `error` (may be null), if the rule needs lengths and all points are
 /// equal or some are not finite, or if there are fewer than two points (one, when closed and
 /// uniform).
-std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed, const Points& points,
-                                            std::string* error);
+std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed,
+                                            const Points& points, std::string* error);
 
 }  // namespace batten
 

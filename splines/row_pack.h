@@ -1,7 +1,9 @@
 #ifndef BATTEN_SPLINES_ROW_PACK_H_
 #define BATTEN_SPLINES_ROW_PACK_H_
 
+#include <cstddef>
 #include <type_traits>
+#include <vector>
 
 #include "splines/row_block.h"
 
@@ -20,6 +22,20 @@ inline const RowPack* AsPacks(const double* aligned) {
 inline RowPack* AsPacks(double* aligned) { return reinterpret_cast<RowPack*>(aligned); }
 inline RowPack Broadcast(double value) { return RowPack{value, value}; }
 inline double SumOfLanes(RowPack pack) { return pack[0] + pack[1]; }
+
+/// Scratch space for a RowBlock's arrays, all zero, aligned as they have to be.
+class RowStorage {
+ public:
+  explicit RowStorage(std::size_t size) : doubles_(size + kRowPack) {}
+  double* data() {
+    constexpr std::size_t kBytes = kRowPack * sizeof(double);
+    const std::size_t address = reinterpret_cast<std::size_t>(doubles_.data());
+    return doubles_.data() + (kBytes - address % kBytes) % kBytes / sizeof(double);
+  }
+
+ private:
+  std::vector<double> doubles_;
+};
 
 /// A whole number of packs that holds `num_rows`.
 inline int PaddedRows(int num_rows) { return (num_rows + kRowPack - 1) / kRowPack * kRowPack; }

@@ -1,0 +1,57 @@
+#include "problems/data_folders.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "problems/data_paths.h"
+
+namespace batten {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
+}
+
+}  // namespace
+
+std::string DataRoot() {
+  std::error_code ignored;
+  const bool has_source = fs::is_directory(fs::path(kSourceDataDirectory) / "problems", ignored);
+  return has_source ? kSourceDataDirectory : kInstallDataDirectory;
+}
+
+std::string CatalogueFolder() {
+  const char* folder = std::getenv("BATTEN_CATALOGUE");
+  if (folder != nullptr && *folder != '\0') return folder;
+  return fs::path(DataRoot()) / "problems" / "catalogue";
+}
+
+std::vector<std::string> DataFolders(const std::string& problem_file) {
+  const fs::path own = fs::path(problem_file).parent_path();
+  std::vector<std::string> folders;
+  const auto add = [&folders](const fs::path& folder) {
+    const std::string text = folder.empty() ? "." : folder.lexically_normal().string();
+    if (std::find(folders.begin(), folders.end(), text) == folders.end()) folders.push_back(text);
+  };
+  add(own);
+  // A whole tree may have been moved: its catalogue finds its data without being told.
+  if (own.filename() == "catalogue") add(own / ".." / ".." / "data");
+  add(fs::path(DataRoot()) / "data");
+  return folders;
+}
+
+std::string FindDataFile(const std::string& name, const std::string& problem_file) {
+  if (fs::path(name).is_absolute()) return IsFile(name) ? name : "";
+  for (const std::string& folder : DataFolders(problem_file)) {
+    const fs::path path = fs::path(folder) / name;
+    if (IsFile(path)) return path;
+  }
+  return "";
+}
+
+}  // namespace batten

@@ -1,0 +1,160 @@
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "problems/catalogue.h"
+#include "problems/data_folders.h"
+#include "problems/strict_json.h"
+
+namespace batten {
+namespace {
+
+constexpr auto kRequired = StrictObject::Presence::kRequired;
+constexpr auto kOptional = StrictObject::Presence::kOptional;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Knots as a list: they stand for the number of control points, the ends and the domain.
+bool ReadGivenKnots(const StrictObject& spline, FitSpec* spec) {
+  for (const char* key : {"ends", "domain"}) {
+    if (spline.Has(key)) return spline.Refuse(key, "nothing, where the knots are given");
+  }
+  std::string why;
+  if (!spline.Numbers("knots", kRequired, &spec->given_knots)) return false;
+  const auto basis = BsplineBasis::Make(spec->degree, spec->closed, spec->given_knots, &why);
+  if (!basis.has_value()) return spline.Complain("knots", why);
+  const int n = basis->num_control_points();
+  spec->control_points = n;
+  if (!spline.Integer("control_points", kOptional, 1, kMaxControlPoints, &spec->control_points)) {
+    return false;
+  }
+  return spec->control_points == n ||
+         spline.Refuse("control_points", std::to_string(n) + ", as the given knots make");
+}
+
+bool ReadKnotRule(const StrictObject& spline, FitSpec* spec) {
+  const int fewest = spec->closed ? 1 : spec->degree + 1;
+  std::string knots = ToString(spec->knots);
+  std::string ends = "end_interpolating";
+  if (!spline.Integer("control_points", kRequired, fewest, kMaxControlPoints,
+                      &spec->control_points) ||
+      !spline.Word("knots", kOptional, {"uniform", "averaged"}, &knots)) {
+    return false;
+  }
+  if (spec->closed && spline.Has("ends")) {
+    return spline.Refuse("ends", "nothing, where the spline is closed");
+  }
+  if (!spline.Word("ends", kOptional, {"end_interpolating", "floating"}, &ends)) return false;
+  FromString(knots, &spec->knots);
+  spec->ends = ends == "floating" ? EndKnots::kFloating : EndKnots::kEndInterpolating;
+  return true;
+}
+
+bool ReadDomain(const StrictObject& spline, FitSpec* spec) {
+  if (!spline.Has("domain")) return true;
+  constexpr char kAllowed[] = "[begin, end] with begin < end";
+  std::vector<double> domain;
+  if (!spline.Numbers("domain", kRequired, &domain)) return false;
+  if (domain.size() != 2 || !(domain[0] < domain[1])) return spline.Refuse("domain", kAllowed);
+  if (spec->parameters.has_value()) {
+    return spline.Refuse("domain", "nothing, unless the parameters are given");
+  }
+  spec->domain = {domain[0], domain[1]};
+  return true;
+}
+
+/// After the parameters, whose rule decides whether a domain may be stated.
+bool ReadSpline(const StrictObject& file, FitSpec* spec) {
+  StrictObject spline;
+  if (!file.Object("spline", kRequired, &spline) ||
+      !spline.HasOnly({"degree", "closed", "control_points", "knots", "ends", "domain"}) ||
+      !spline.Integer("degree", kOptional, 1, kMaxDegree, &spec->degree) ||
+      !spline.Flag("closed", kOptional, &spec->closed)) {
+    return false;
+  }
+  if (spline.IsList("knots")) return ReadGivenKnots(spline, spec);
+  return ReadKnotRule(spline, spec) && ReadDomain(spline, spec);
+}
+
+bool ReadParameters(const StrictObject& file, FitSpec* spec) {
+  std::string word = ToString(*spec->parameters);
+  if (!file.Word("parameters", kOptional, {"uniform", "chord_length", "centripetal", "given"},
+                 &word)) {
+    return false;
+  }
+  Parameterization rule = Parameterization::kUniform;
+  spec->parameters.reset();
+  if (FromString(word, &rule)) spec->parameters = rule;
+  return true;
+}
+
+bool ReadTerms(const StrictObject& file, FitSpec* spec) {
+  std::vector<std::string> texts = {"interpolation"};
+  if (!file.Texts("terms", kOptional, &texts)) return false;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    NameSpec term;
+    const Term* found = nullptr;
+    OptionValues options;
+    std::string why;
+    if (!ParseNameSpec(texts[i], &term, &why) ||
+        !TermRegistry::Global().Resolve(term, &found, &options, &why)) {
+      return file.Complain("terms/" + std::to_string(i), why);
+    }
+    spec->terms.push_back(std::move(term));
+  }
+  return true;
+}
+
+bool ReadName(const StrictObject& file, std::string* name) {
+  constexpr char kCharacters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  if (!file.Text("name", kRequired, name)) return false;
+  return name->find_first_not_of(kCharacters) == std::string::npos ||
+         file.Refuse("name", "letters, digits, _ and -");
+}
+
+bool ReadData(const StrictObject& file, CatalogueEntry* entry) {
+  std::string name;
+  if (!file.Text("data", kRequired, &name)) return false;
+  entry->data_path = FindDataFile(name, entry->path);
+  if (!entry->data_path.empty()) return true;
+  std::string folders;
+  for (const std::string& folder : DataFolders(entry->path)) {
+    folders += (folders.empty() ? "" : " or ") + folder;
+  }
+  return file.Refuse("data", "a file in " + folders);
+}
+
+bool ReadReference(const StrictObject& file, CatalogueEntry* entry) {
+  StrictObject reference;
+  std::string source;  // how the energy was computed: for the reader of the file
+  entry->reference_energy = std::numeric_limits<double>::quiet_NaN();
+  if (!file.Has("reference")) return true;
+  return file.Object("reference", kRequired, &reference) &&
+         reference.HasOnly({"energy", "source"}) &&
+         reference.Number("energy", kRequired, 0.0, kInfinity, &entry->reference_energy) &&
+         reference.Text("source", kOptional, &source);
+}
+
+}  // namespace
+
+bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string* error) {
+  nlohmann::json json;
+  if (!ReadJsonFile(path, &json, error)) return false;
+  const StrictObject file(path, "", &json, error);
+  CatalogueEntry read;
+  read.path = path;
+  FitSpec* spec = &read.spec;
+  if (!file.HasOnly({"name", "summary", "data", "spline", "parameters", "terms", "start",
+                     "reference", "citation"}) ||
+      !ReadName(file, &read.name) || !file.Text("summary", kOptional, &read.summary) ||
+      !ReadData(file, &read) || !ReadParameters(file, spec) || !ReadSpline(file, spec) ||
+      !ReadTerms(file, spec) ||
+      !file.Word("start", kOptional, {"data", "centroid"}, &spec->start) ||
+      !ReadReference(file, &read) || !file.Text("citation", kOptional, &read.citation)) {
+    return false;
+  }
+  spec->name = read.name;
+  *entry = std::move(read);
+  return true;
+}
+
+}  // namespace batten

@@ -1,0 +1,226 @@
+#include "problems/strict_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cost_functions/options.h"
+
+namespace batten {
+namespace {
+
+using Json = nlohmann::json;
+
+// ASCII and one line whatever stands in the file.
+std::string Printable(std::string text) {
+  const auto replaced = [](unsigned char c) { return c < 0x20 || c > 0x7e; };
+  std::replace_if(text.begin(), text.end(), replaced, '?');
+  return text;
+}
+
+std::string FoundText(const Json* value) {
+  if (value == nullptr) return "nothing";
+  if (value->is_array()) return value->empty() ? "an empty list" : "a list";
+  if (value->is_object()) return "an object";
+  constexpr std::size_t kLongest = 60;
+  const std::string text = value->dump(-1, ' ', true);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+std::string RangeText(double lowest, double highest) {
+  if (std::isinf(highest)) return "at least " + NumberText(lowest);
+  return NumberText(lowest) + " to " + NumberText(highest);
+}
+
+/// Notes the first key that stands twice in its object, which the parser itself lets pass.
+class RepeatedKeys {
+ public:
+  bool operator()(Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) open_.emplace_back();
+    if (event == Json::parse_event_t::object_end) open_.pop_back();
+    if (event != Json::parse_event_t::key) return true;
+    const std::string key = parsed.get<std::string>();
+    if (!open_.back().insert(key).second && first_.empty()) first_ = FoundText(&parsed);
+    return true;
+  }
+  const std::string& first() const { return first_; }
+
+ private:
+  std::vector<std::set<std::string>> open_;
+  std::string first_;
+};
+
+}  // namespace
+
+bool ReadJsonFile(const std::string& path, Json* json, std::string* error) {
+  std::ifstream file(path);
+  // A folder can be opened but not read.
+  if (!file || file.peek() == std::ifstream::traits_type::eof()) {
+    *error = path + (file.is_open() ? ": found nothing to read; allowed: a file with JSON text"
+                                    : ": found no such file that can be read");
+    return false;
+  }
+  RepeatedKeys keys;
+  try {
+    *json = Json::parse(file, [&keys](int /*depth*/, Json::parse_event_t event, Json& parsed) {
+      return keys(event, parsed);
+    });
+  } catch (const Json::exception& problem) {
+    std::string what =
+        problem.what();  // "[json.exception...] parse error at line 1, column 2: ..."
+    const std::size_t line = what.find("line ");
+    if (line == std::string::npos) what = what.substr(what.find(']') + 1);
+    *error =
+        path + ": " + Printable(line == std::string::npos ? what.substr(1) : what.substr(line));
+    return false;
+  }
+  if (keys.first().empty()) return true;
+  *error = path + ": key " + keys.first() + " stands twice in one object; allowed: once";
+  return false;
+}
+
+StrictObject::StrictObject(std::string file, std::string pointer, const Json* json,
+                           std::string* error)
+    : file_(std::move(file)), pointer_(std::move(pointer)), json_(json), error_(error) {}
+
+const Json* StrictObject::Find(const std::string& key) const {
+  if (json_ == nullptr || !json_->is_object()) return nullptr;
+  const auto found = json_->find(key);
+  return found == json_->end() ? nullptr : &*found;
+}
+
+bool StrictObject::Complain(const std::string& key, const std::string& sentence) const {
+  const std::string place = key.empty() && !pointer_.empty() ? pointer_ : pointer_ + "/" + key;
+  *error_ = file_ + ": " + place + ": " + sentence;
+  return false;
+}
+
+bool StrictObject::Refuse(const std::string& key, const std::string& allowed) const {
+  const std::size_t slash = key.find('/');
+  const Json* value = key.empty() ? json_ : Find(key.substr(0, slash));
+  if (slash != std::string::npos) value = &value->at(std::stoul(key.substr(slash + 1)));
+  return Complain(key, "found " + FoundText(value) + "; allowed: " + allowed);
+}
+
+bool StrictObject::IsThere(const std::string& key, Presence presence, const std::string& allowed,
+                           bool* result) const {
+  if (Has(key)) return true;
+  *result = presence == Presence::kOptional || Refuse(key, allowed);
+  return false;
+}
+
+bool StrictObject::HasOnly(const std::vector<std::string>& keys) const {
+  if (!json_->is_object()) return Refuse("", "an object");
+  for (const auto& item : json_->items()) {
+    if (std::find(keys.begin(), keys.end(), item.key()) == keys.end()) {
+      return Complain("", UnknownNameMessage("key", item.key(), keys));
+    }
+  }
+  return true;
+}
+
+bool StrictObject::Text(const std::string& key, Presence presence, std::string* value) const {
+  constexpr char kAllowed[] = "text on one line";
+  bool result = true;
+  if (!IsThere(key, presence, kAllowed, &result)) return result;
+  if (!Find(key)->is_string()) return Refuse(key, kAllowed);
+  const auto& text = Find(key)->get_ref<const std::string&>();
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  if (text.empty() || std::any_of(text.begin(), text.end(), is_control)) {
+    return Refuse(key, kAllowed);
+  }
+  *value = text;
+  return true;
+}
+
+bool StrictObject::Word(const std::string& key, Presence presence,
+                        const std::vector<std::string>& words, std::string* value) const {
+  std::string allowed;
+  for (const std::string& word : words) allowed += (allowed.empty() ? "" : ", ") + word;
+  bool result = true;
+  if (!IsThere(key, presence, allowed, &result)) return result;
+  const Json& word = *Find(key);
+  if (!word.is_string() || std::find(words.begin(), words.end(), word) == words.end()) {
+    return Refuse(key, allowed);
+  }
+  *value = word.get<std::string>();
+  return true;
+}
+
+bool StrictObject::Flag(const std::string& key, Presence presence, bool* value) const {
+  bool result = true;
+  if (!IsThere(key, presence, "true, false", &result)) return result;
+  if (!Find(key)->is_boolean()) return Refuse(key, "true, false");
+  *value = Find(key)->get<bool>();
+  return true;
+}
+
+bool StrictObject::Integer(const std::string& key, Presence presence, int lowest, int highest,
+                           int* value) const {
+  const std::string allowed = std::to_string(lowest) + " to " + std::to_string(highest);
+  bool result = true;
+  if (!IsThere(key, presence, allowed, &result)) return result;
+  const Json& number = *Find(key);
+  if (!number.is_number_integer()) return Refuse(key, allowed + ", whole numbers");
+  // As a double first: the file may hold more than an int does.
+  const double wide = number.get<double>();
+  if (wide < lowest || wide > highest) return Refuse(key, allowed);
+  *value = number.get<int>();
+  return true;
+}
+
+bool StrictObject::Number(const std::string& key, Presence presence, double lowest, double highest,
+                          double* value) const {
+  const std::string allowed = RangeText(lowest, highest);
+  bool result = true;
+  if (!IsThere(key, presence, allowed, &result)) return result;
+  const Json& number = *Find(key);
+  if (!number.is_number() || number.get<double>() < lowest || number.get<double>() > highest)
+    return Refuse(key, allowed);
+  *value = number.get<double>();
+  return true;
+}
+
+bool StrictObject::IsList(const std::string& key) const {
+  return Has(key) && Find(key)->is_array();
+}
+
+bool StrictObject::Numbers(const std::string& key, Presence presence,
+                           std::vector<double>* values) const {
+  bool result = true;
+  if (!IsThere(key, presence, "a list of numbers", &result)) return result;
+  if (!IsList(key) || Find(key)->empty()) return Refuse(key, "a list of numbers");
+  std::vector<double> read;
+  for (const Json& number : *Find(key)) {
+    if (!number.is_number()) return Refuse(key + "/" + std::to_string(read.size()), "a number");
+    read.push_back(number.get<double>());
+  }
+  *values = std::move(read);
+  return true;
+}
+
+bool StrictObject::Texts(const std::string& key, Presence presence,
+                         std::vector<std::string>* values) const {
+  bool result = true;
+  if (!IsThere(key, presence, "a list of texts", &result)) return result;
+  if (!IsList(key) || Find(key)->empty()) return Refuse(key, "a list of texts");
+  std::vector<std::string> read;
+  for (const Json& text : *Find(key)) {
+    if (!text.is_string()) return Refuse(key + "/" + std::to_string(read.size()), "text");
+    read.push_back(text.get<std::string>());
+  }
+  *values = std::move(read);
+  return true;
+}
+
+bool StrictObject::Object(const std::string& key, Presence presence, StrictObject* value) const {
+  bool result = true;
+  if (!IsThere(key, presence, "an object", &result)) return result;
+  if (!Find(key)->is_object()) return Refuse(key, "an object");
+  *value = StrictObject(file_, pointer_ + "/" + key, Find(key), error_);
+  return true;
+}
+
+}  // namespace batten

@@ -1,0 +1,69 @@
+#ifndef BATTEN_TESTS_SOLVERS_TEST_FITS_H_
+#define BATTEN_TESTS_SOLVERS_TEST_FITS_H_
+
+#include <glog/logging.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+inline FitSpec MakeSpec(int degree, bool closed, int control_points,
+                        const std::string& terms = "interpolation") {
+  FitSpec spec;
+  spec.degree = degree;
+  spec.closed = closed;
+  spec.control_points = control_points;
+  spec.parameters = Parameterization::kCentripetal;
+  std::string error;
+  CHECK(ParseNameSpecList(terms, &spec.terms, &error)) << error;
+  return spec;
+}
+
+/// A fit of points of data/, "animals/rhino_100.csv".
+inline std::unique_ptr<Problem> MakeFileFit(const std::string& path, FitSpec spec) {
+  std::string error;
+  std::optional<DataSet> data = ReadDataSet(std::string(BATTEN_SOURCE_DIR "/data/") + path, &error);
+  CHECK(data.has_value()) << error;
+  std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), std::move(spec), &error);
+  CHECK(problem != nullptr) << error;
+  return problem;
+}
+
+/// Points near a bent loop without symmetry, off it by noise of standard deviation 0.1, with weights
+/// in [0.1, 2].
+inline DataSet MakeNoisyLoop(int num_points, int dimension, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  std::uniform_real_distribution<double> weight(0.1, 2.0);
+  DataSet data;
+  data.name = "noisy_loop";
+  data.points.resize(num_points, dimension);
+  data.weights = Eigen::VectorXd(num_points);
+  for (int i = 0; i < num_points; ++i) {
+    const double angle = 6.28 * i / num_points;
+    for (int c = 0; c < dimension; ++c) {
+      data.points(i, c) = 3.0 * std::sin((c + 1) * angle + 0.7 * c) + std::cos(2.0 * angle + c) +
+                          noise(random);
+    }
+    (*data.weights)[i] = weight(random);
+  }
+  return data;
+}
+
+inline std::unique_ptr<Problem> MakeFit(DataSet data, FitSpec spec) {
+  std::string error;
+  std::unique_ptr<Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
+  CHECK(problem != nullptr) << error;
+  return problem;
+}
+
+}  // namespace batten
+
+#endif  // BATTEN_TESTS_SOLVERS_TEST_FITS_H_

@@ -1,0 +1,32 @@
+#ifndef BATTEN_TOOLS_RUN_FLAGS_H_
+#define BATTEN_TOOLS_RUN_FLAGS_H_
+
+#include <gflags/gflags_declare.h>
+
+#include <string>
+#include <vector>
+
+#include "experiments/run.h"
+#include "tools/flags.h"
+
+// Flags that mean the same in several commands.
+DECLARE_bool(quiet);
+DECLARE_string(out);
+
+namespace batten {
+
+/// How solvers are run: --mode, the stop rule's numbers, --seed, --threads, --compile.
+std::vector<FlagInfo> RunFlags();
+RunSpec RunSpecFromFlags();
+
+/// The solvers of a list in the grammar, or all registered ones that wrap no other for `all`; each
+/// with options that it has. False with one sentence in `error`.
+bool SolversFromFlag(const std::string& flag, const std::string& text,
+                     std::vector<NameSpec>* solvers, std::string* error);
+
+/// "a, b" to parts without the blanks around them; empty parts stay.
+std::vector<std::string> SplitAtCommas(const std::string& text);
+
+}  // namespace batten
+
+#endif  // BATTEN_TOOLS_RUN_FLAGS_H_
