@@ -156,11 +156,13 @@ class FunctorKernel {
           if (!ResidualsAndJacobian(site, window, x, residuals, jacobian)) return false;
           double slope = 1.0;
           *energy += weight * Loss(loss, SquaredNorm(residuals), &slope);
-          const double factor = 2.0 * weight * slope;
+          // Ceres gives the root of weight * rho' to each of the two factors; so do we: equal bits.
+          const double root = std::sqrt(std::abs(weight * slope));
+          const double twice_root = std::copysign(2.0 * root, weight * slope);
           for (int v = 0; v < num_variables(); ++v) {
             double sum = 0.0;
             for (int r = 0; r < num_residuals(); ++r) {
-              sum += jacobian[r * num_variables() + v] * (factor * residuals[r]);
+              sum += (root * jacobian[r * num_variables() + v]) * (twice_root * residuals[r]);
             }
             local[v] += sum;
           }
@@ -222,27 +224,35 @@ class FunctorKernel {
   }
 
   /// Hands out the rows root_factor * (A, Q) of an affine residual whose rows are alike for all
-  /// coordinates: every P_j is the same variable j in all of them, kRowPack sites at a time.
+  /// coordinates, kRowPack sites at a time.
   void StreamRows(double root_factor, RowConsumer* consumer) const {
+    Form variables[kOrderStorage];
+    const Form* points[kOrderStorage];
+    for (int j = 0; j < order(); ++j) {
+      variables[j] = Form::Variable(j);
+      points[j] = &variables[j];
+    }
     alignas(32) double coefficients[kOrderStorage * kMaxRowsPerBlock];
     alignas(32) double right_hand_sides[kDimensionStorage * kMaxRowsPerBlock];
     for (const Sites::Group& group : sites_.groups) {
+      const SpanBasis<P, Pack> span_basis(basis_.degree(), basis_.knots().data(), group.span);
       for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
-        const int count = std::min(kMaxRowsPerBlock, group.end - begin);
-        const int stride = (count + kRowPack - 1) / kRowPack * kRowPack;
-        FillRows(group.span, begin, count, stride, root_factor, coefficients, right_hand_sides);
         RowBlock block;
         block.first_column = basis_.ControlPointIndex(group.span - basis_.degree());
-        block.num_rows = count;
-        block.stride = stride;
+        block.num_rows = std::min(kMaxRowsPerBlock, group.end - begin);
+        block.stride = (block.num_rows + kRowPack - 1) / kRowPack * kRowPack;
         block.coefficients = coefficients;
         block.right_hand_sides = right_hand_sides;
+        FillRows(span_basis, group.span, points, begin, block, root_factor, coefficients,
+                 right_hand_sides);
         consumer->Consume(block);
       }
     }
   }
 
  private:
+  using Form = AffineForm<Pack, kOrderStorage>;
+
   double SquaredNorm(const double* residuals) const {
     // Eigen's own order of summation, as in Ceres: equal bits.
     return Eigen::Map<const Eigen::VectorXd>(residuals, num_residuals()).squaredNorm();
@@ -256,70 +266,72 @@ class FunctorKernel {
     return rho[0];
   }
 
-  __attribute__((flatten)) void FillRows(int span, int begin, int count, int stride, double root_factor,
-                double* coefficients, double* right_hand_sides) const {
-    using Form = AffineForm<Pack, kOrderStorage>;
-    // A copy of the knots that matter, so that the compiler sees that stores do not change them.
-    double knots[2 * kOrderStorage];
-    const int p = order() - 1;
-    std::copy_n(basis_.knots().data() + span + 1 - p, 2 * p, knots);
-    Form variables[kOrderStorage];
-    const Form* points[kOrderStorage];
-    for (int j = 0; j < order(); ++j) {
-      variables[j] = Form::Variable(j);
-      points[j] = &variables[j];
+  void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points, int begin,
+                const RowBlock& block, double root_factor, double* coefficients, double* right_hand_sides) const {
+    // Whole packs of neighbours in memory first; then the rest, a lane at a time.
+    const int in_a_row = sites_.order.empty() ? block.num_rows / kRowPack * kRowPack : 0;
+    for (int first = 0; first < in_a_row; first += kRowPack) {
+      FillPack<true>(span_basis, span, points, begin + first, 0, root_factor, block.stride,
+                     coefficients + first, right_hand_sides + first);
     }
-    for (int first = 0; first < stride; first += kRowPack) {
-      PackSite site = MakePackSite(knots, p - 1, begin + first, begin + count - 1);
-      Form result;
-      for (int c = 0; c < dimension(); ++c) {
-        site.mutable_point()[0] = PackPoint(begin + first, begin + count - 1, c);
-        functor_(site, points, &result);
-        (-root_factor * result.constant).Store(right_hand_sides + c * stride + first);
-      }
-      for (int j = 0; j < order(); ++j) {
-        (root_factor * result.coefficient[j]).Store(coefficients + j * stride + first);
-      }
+    for (int first = in_a_row; first < block.stride; first += kRowPack) {
+      FillPack<false>(span_basis, span, points, begin + first, begin + block.num_rows - 1, root_factor,
+                      block.stride, coefficients + first, right_hand_sides + first);
     }
-    for (int i = count; i < stride; ++i) {
-      for (int j = 0; j < order(); ++j) coefficients[j * stride + i] = 0.0;
-      for (int c = 0; c < dimension(); ++c) right_hand_sides[c * stride + i] = 0.0;
+    for (int i = block.num_rows; i < block.stride; ++i) {
+      for (int j = 0; j < order(); ++j) coefficients[j * block.stride + i] = 0.0;
+      for (int c = 0; c < dimension(); ++c) right_hand_sides[c * block.stride + i] = 0.0;
     }
   }
-
-  /// A curve with one coordinate: rows are alike for all of them.
-  using PackSite = Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives>;
 
   /// Entries of the sites first..first+kRowPack-1; those past `last` repeat it.
-  Pack PackOf(const double* source, std::ptrdiff_t step, int first,
-                                   int last) const {
-    if (sites_.order.empty() && first + kRowPack - 1 <= last) {
+  template <bool kInARow>
+  Pack PackOf(const double* source, std::ptrdiff_t step, int first, int last) const {
+    if constexpr (kInARow) {
       return Pack::Gather(source + first * step, step);
+    } else {
+      std::ptrdiff_t item[kRowPack];
+      for (int i = 0; i < kRowPack; ++i) item[i] = sites_.item(std::min(first + i, last));
+      return Pack::Gather(source, item, step);
     }
-    std::ptrdiff_t item[kRowPack];
-    for (int i = 0; i < kRowPack; ++i) item[i] = sites_.item(std::min(first + i, last));
-    return Pack::Gather(source, item, step);
   }
 
-  Pack PackPoint(int first, int last, int c) const {
-    if (sites_.points == nullptr) return Pack(0.0);
-    return (PackOf(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
-           setting_.scale;
-  }
-
-  PackSite MakePackSite(const double* knots, int span, int first,
-                                             int last) const {
-    PackSite site(basis_.degree(), 1);
-    EvaluateBasisDerivatives<P>(basis_.degree(), knots, span,
-                                PackOf(sites_.parameters, 1, first, last), Functor::kDerivatives,
-                                site.mutable_basis());
+  /// The rows of kRowPack sites. Coordinate by coordinate the functor sees a curve with one
+  /// coordinate, whose control point j is the variable x_j.
+  template <bool kInARow>
+  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, Pack>& span_basis, int span,
+                                                      const Form* const* points, int first,
+                                                      int last, double root_factor, int stride,
+                                                      double* coefficients,
+                                                      double* right_hand_sides) const {
+    Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
+    const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
+    if constexpr (Functor::kDerivatives == 0) {
+      span_basis.Evaluate(t, site.mutable_basis());
+    } else {
+      EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span, t,
+                                  Functor::kDerivatives, site.mutable_basis());
+    }
     Pack root(1.0);
     if (sites_.weights != nullptr) {
-      root = PackOf(sites_.weights, 1, first, last);
-      for (int i = 0; i < kRowPack; ++i) root.v[i] = std::sqrt(root.v[i]);
+      root = PackOf<kInARow>(sites_.weights, 1, first, last);
+      root = root.Map([](double weight) { return std::sqrt(weight); });
     }
     site.set_root_weight(root);
-    return site;
+    Form result;
+    for (int c = 0; c < dimension(); ++c) {
+      Pack point(0.0);
+      if (sites_.points != nullptr) {
+        point = (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
+                setting_.scale;
+      }
+      site.mutable_point()[0] = point;
+      functor_(site, points, &result);
+      (-root_factor * result.constant).Store(right_hand_sides + c * stride);
+    }
+    for (int j = 0; j < order(); ++j) {
+      (root_factor * result.coefficient[j]).Store(coefficients + j * stride);
+    }
   }
 
   const FitSetting& setting_;

@@ -8,39 +8,81 @@
 namespace batten {
 
 /// kRowPack doubles that are computed with as one: the scalar in which affine residuals are
-/// evaluated for several sites at a time.
+/// evaluated for several sites at a time. Made of vectors as wide as the processor's registers: GCC
+/// builds a wider vector's copies element by element through memory.
 struct Pack {
-  typedef double Vector __attribute__((vector_size(kRowPack * sizeof(double))));
+#ifdef __AVX__
+  static constexpr int kLaneSize = 4;
+#else
+  static constexpr int kLaneSize = 2;
+#endif
+  static constexpr int kLanes = kRowPack / kLaneSize;
+  typedef double Lane __attribute__((vector_size(kLaneSize * sizeof(double))));
 
   Pack() = default;
-  explicit Pack(double value) : v(Vector{} + value) {}
-  explicit Pack(Vector vector) : v(vector) {}
-  /// Lane i from source[i * step].
+  explicit Pack(double value) {
+    for (Lane& lane : lanes) lane = value - Lane{};
+  }
+  /// Entry i from source[i * step].
   static Pack Gather(const double* source, std::ptrdiff_t step) {
-    return Pack(Vector{source[0], source[step], source[2 * step], source[3 * step]});
+    Pack pack;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = 0; i < kLaneSize; ++i) pack.lanes[l][i] = source[(l * kLaneSize + i) * step];
+    }
+    return pack;
   }
-  /// Lane i from source[lanes[i] * step].
-  static Pack Gather(const double* source, const std::ptrdiff_t* lanes, std::ptrdiff_t step) {
-    return Pack(Vector{source[lanes[0] * step], source[lanes[1] * step], source[lanes[2] * step],
-                       source[lanes[3] * step]});
+  /// Entry i from source[items[i] * step].
+  static Pack Gather(const double* source, const std::ptrdiff_t* items, std::ptrdiff_t step) {
+    Pack pack;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = 0; i < kLaneSize; ++i) {
+        pack.lanes[l][i] = source[items[l * kLaneSize + i] * step];
+      }
+    }
+    return pack;
   }
-  void Store(double* aligned_target) const { *reinterpret_cast<Vector*>(aligned_target) = v; }
+  void Store(double* aligned_target) const {
+    for (int l = 0; l < kLanes; ++l) reinterpret_cast<Lane*>(aligned_target)[l] = lanes[l];
+  }
+  template <typename Function>
+  Pack Map(Function function) const {
+    Pack result;
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = 0; i < kLaneSize; ++i) result.lanes[l][i] = function(lanes[l][i]);
+    }
+    return result;
+  }
 
-  Vector v;
+  template <typename Operation>
+  static Pack Combine(const Pack& a, const Pack& b, Operation operation) {
+    Pack result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = operation(a.lanes[l], b.lanes[l]);
+    return result;
+  }
+
+  Lane lanes[kLanes];
 };
 
-inline Pack operator+(Pack a, Pack b) { return Pack(a.v + b.v); }
-inline Pack operator-(Pack a, Pack b) { return Pack(a.v - b.v); }
-inline Pack operator*(Pack a, Pack b) { return Pack(a.v * b.v); }
-inline Pack operator/(Pack a, Pack b) { return Pack(a.v / b.v); }
-inline Pack operator-(Pack a) { return Pack(-a.v); }
-inline Pack operator+(Pack a, double b) { return Pack(a.v + b); }
-inline Pack operator-(Pack a, double b) { return Pack(a.v - b); }
-inline Pack operator*(Pack a, double b) { return Pack(a.v * b); }
-inline Pack operator/(Pack a, double b) { return Pack(a.v / b); }
-inline Pack operator+(double a, Pack b) { return Pack(a + b.v); }
-inline Pack operator-(double a, Pack b) { return Pack(a - b.v); }
-inline Pack operator*(double a, Pack b) { return Pack(a * b.v); }
+inline Pack operator+(const Pack& a, const Pack& b) {
+  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x + y; });
+}
+inline Pack operator-(const Pack& a, const Pack& b) {
+  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x - y; });
+}
+inline Pack operator*(const Pack& a, const Pack& b) {
+  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x * y; });
+}
+inline Pack operator/(const Pack& a, const Pack& b) {
+  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x / y; });
+}
+inline Pack operator-(const Pack& a) { return Pack(0.0) - a; }
+inline Pack operator+(const Pack& a, double b) { return a + Pack(b); }
+inline Pack operator-(const Pack& a, double b) { return a - Pack(b); }
+inline Pack operator*(const Pack& a, double b) { return a * Pack(b); }
+inline Pack operator/(const Pack& a, double b) { return a / Pack(b); }
+inline Pack operator+(double a, const Pack& b) { return Pack(a) + b; }
+inline Pack operator-(double a, const Pack& b) { return Pack(a) - b; }
+inline Pack operator*(double a, const Pack& b) { return Pack(a) * b; }
 
 }  // namespace batten
 

@@ -2,6 +2,7 @@
 #define BATTEN_EXPERIMENTS_COMPARISON_H_
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,44 +13,55 @@
 namespace batten {
 
 struct ComparisonSpec {
-  std::vector<std::string> problems;   // catalogue names or problem files
+  std::vector<std::string> problems;  // catalogue names or problem files
   std::vector<NameSpec> solvers;
   RunSpec run;
-  int repetitions = 5;                 // >= 1; interleaved: all solvers once, then all again, ...
-  /// One line of progress at a time: "rhino: 3 / 40 lbfgs"; may be empty.
+  int repetitions = 5;  // >= 1; interleaved: all solvers once, then all again, ...
+  /// Told before each run: "rhino: lbfgs" is run done + 1 of total; may be empty.
   std::function<void(int done, int total, const std::string& running)> progress;
 };
 
 /// One problem x solver: a row of the table and of cells.jsonl (schema in docs/formats.md).
 struct ComparisonRow {
   std::string problem;
-  std::string solver;                  // as written, NAME/OPTION=VALUE
-  RunResult run;                       // of the first repetition: trace and end
-  double setup_seconds = 0.0;          // medians over the repetitions
+  int problem_index = 0;       // in ComparisonResult::problems
+  std::string solver;          // as written, NAME/OPTION=VALUE
+  RunResult run;               // of the first repetition: trace and end
+  double setup_seconds = 0.0;  // medians over the repetitions
   double solve_seconds = 0.0;
   double seconds = 0.0;
-  double times_cholesky = 0.0;         // seconds / seconds of banded_cholesky on this problem; NaN
-  double gap = 0.0;                    // ||A (P - P*)||^2 / (E(start) - E*); NaN where not quadratic
+  int repetitions = 0;          // really made: one where a run is skipped or cut by time
+  double times_cholesky = 0.0;  // seconds / seconds of banded_cholesky on this problem; NaN
+  double gap = 0.0;             // ||A (P - P*)||^2 / (E(start) - E*); NaN where not quadratic
   /// Largest distance of a control point from the direct answer's, over the data's size where the
   /// minimum is unique; else largest |A (P - P*)| of a row over the data's size.
   double distance_to_direct = 0.0;
+  double allowed_distance = 0.0;  // what |g| at the end and the condition allow it to be
   bool unique_minimum = true;
+  /// E - E* at each row of the trace, as ||A (P - P*)||^2, in the user's units. Where iterates
+  /// would need too much memory: by subtraction as far as that is no noise, NaN from there on.
+  std::vector<double> excess_energies;
   FitReport report;
 };
 
 struct ComparisonResult {
   ComparisonSpec spec;
-  std::vector<ComparisonRow> rows;     // problem by problem, solvers in the order given
+  std::vector<ComparisonRow> rows;  // problem by problem, solvers in the order given
+  std::vector<std::shared_ptr<const Problem>> problems;  // as in spec.problems
+  std::vector<double> minimum_energies;                  // E* of each; NaN: no direct answer
   bool interrupted = false;
   /// Cross-check: rows that claim a minimum (race mode) yet are farther from the direct answer than
   /// the tolerance derived from |g| and the condition: one sentence each.
   std::vector<std::string> disagreements;
 };
 
-/// Runs everything. banded_qr and banded_cholesky are run as references even if not asked for (then
-/// without a row). False with one sentence in `error` for unknown names or unreadable problems, found
-/// before anything runs.
+/// Runs everything. QR and banded_cholesky are run as references even if not asked for (then
+/// without a row). False with one sentence in `error` for unknown names or unreadable problems,
+/// found before anything runs.
 bool Compare(const ComparisonSpec& spec, ComparisonResult* result, std::string* error);
+
+/// The middle one, or the mean of both; NaN for none.
+double Median(std::vector<double> values);
 
 }  // namespace batten
 

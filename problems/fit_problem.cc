@@ -48,11 +48,14 @@ bool CurveFit::ChooseParameters(std::string* error) {
     *error = "parameters are to be given, but the data have no column t";
     return false;
   }
-  parameters_ = *data_.parameters;
+  parameters_ = std::move(*data_.parameters);
+  data_.parameters.reset();
   if (spec_.domain.has_value()) {
     domain_ = *spec_.domain;
   } else if (!spec_.closed) {
-    domain_ = {parameters_.minCoeff(), parameters_.maxCoeff()};
+    const auto [low, high] =
+        std::minmax_element(parameters_.data(), parameters_.data() + parameters_.size());
+    domain_ = {*low, *high};
   }
   if (!(domain_.first < domain_.second) || !std::isfinite(domain_.second - domain_.first)) {
     *error = "the parameters' domain is empty: it goes from " + NumberText(domain_.first) + " to " +
@@ -96,12 +99,14 @@ bool CurveFit::ChooseKnots(std::string* error) {
     return false;
   }
   spec_.control_points = basis_->num_control_points();
+  const double begin = basis_->domain_begin();
+  const double end = basis_->domain_end();
   for (Eigen::Index i = 0; i < parameters_.size(); ++i) {
     const double t = parameters_[i];
-    if (!spec_.closed && (t < basis_->domain_begin() || t > basis_->domain_end())) {
+    if (t >= begin && (spec_.closed ? t < end : t <= end)) continue;
+    if (!spec_.closed) {
       *error = "parameter " + NumberText(t) + " of data point " + std::to_string(i + 1) +
-               " is outside the domain; allowed: " + NumberText(basis_->domain_begin()) + " to " +
-               NumberText(basis_->domain_end());
+               " is outside the domain; allowed: " + NumberText(begin) + " to " + NumberText(end);
       return false;
     }
     parameters_[i] = basis_->Wrap(t);
@@ -110,9 +115,20 @@ bool CurveFit::ChooseKnots(std::string* error) {
 }
 
 void CurveFit::Scale() {
-  const Eigen::RowVectorXd low = data_.points.colwise().minCoeff();
-  const Eigen::RowVectorXd high = data_.points.colwise().maxCoeff();
-  const double side = (high - low).maxCoeff();
+  const int d = dimension();
+  double low[kMaxDimension];
+  double high[kMaxDimension];
+  std::copy_n(data_.points.data(), d, low);
+  std::copy_n(data_.points.data(), d, high);
+  const double* point = data_.points.data();
+  for (Eigen::Index i = 0; i < data_.points.rows(); ++i, point += d) {
+    for (int c = 0; c < d; ++c) {
+      low[c] = std::min(low[c], point[c]);
+      high[c] = std::max(high[c], point[c]);
+    }
+  }
+  double side = 0.0;
+  for (int c = 0; c < d; ++c) side = std::max(side, high[c] - low[c]);
   setting_.dimension = dimension();
   size_ = side > 0.0 ? side : 1.0;
   // A power of two no smaller than the longest side: dividing by it rounds nothing.
@@ -130,19 +146,34 @@ Points CurveFit::StartPoints() const {
     return start;
   }
   const auto m = static_cast<int>(parameters_.size());
-  std::vector<int> order(static_cast<std::size_t>(m));
-  std::iota(order.begin(), order.end(), 0);
-  const auto before = [this](int a, int b) { return parameters_[a] < parameters_[b]; };
-  if (!std::is_sorted(order.begin(), order.end(), before)) {
-    std::stable_sort(order.begin(), order.end(), before);
+  // Empty while the data already are in the order of their parameters, as they mostly are.
+  std::vector<int> order;
+  if (!std::is_sorted(parameters_.data(), parameters_.data() + m)) {
+    order.resize(static_cast<std::size_t>(m));
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [this](int a, int b) { return parameters_[a] < parameters_[b]; });
   }
+  const auto item = [&order](int k) {
+    return order.empty() ? k : order[static_cast<std::size_t>(k)];
+  };
+  const auto first_above = [&](double t) {
+    int low = 0;
+    int high = m;
+    while (low < high) {
+      const int middle = low + (high - low) / 2;
+      if (parameters_[item(middle)] > t) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    return low;
+  };
   const double period = basis_->domain_length();
   for (int j = 0; j < n; ++j) {
     const double t = basis_->Greville(j);
-    const auto next = static_cast<int>(
-        std::upper_bound(order.begin(), order.end(), t,
-                         [this](double value, int i) { return value < parameters_[i]; }) -
-        order.begin());
+    const int next = first_above(t);
     int left = next - 1;
     int right = next;
     double shift_left = 0.0;
@@ -154,8 +185,8 @@ Points CurveFit::StartPoints() const {
       left = std::max(left, 0);
       right = std::min(right, m - 1);
     }
-    const int a = order[static_cast<std::size_t>(left)];
-    const int b = order[static_cast<std::size_t>(right)];
+    const int a = item(left);
+    const int b = item(right);
     const double begin = parameters_[a] + shift_left;
     const double length = parameters_[b] + shift_right - begin;
     const double part = length > 0.0 ? (t - begin) / length : 0.0;

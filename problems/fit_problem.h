@@ -39,6 +39,7 @@ struct FitSpec {
 class CurveFit {
  public:
   const FitSpec& spec() const { return spec_; }
+  /// Without the column t, which parameters() has taken over.
   const DataSet& data() const { return data_; }
   const BsplineBasis& basis() const { return *basis_; }
   const FitSetting& setting() const { return setting_; }

@@ -30,6 +30,13 @@ std::string ShortReason(const std::string& message) {
   return "Ceres: " + clause;
 }
 
+std::optional<Outcome> RunWithoutVariables(const Objective& objective, RunContext* context,
+                                           const Eigen::VectorXd& x) {
+  if (objective.num_variables() > 0) return std::nullopt;
+  if (context->Iterate(x) != Status::kOk) return Outcome{context->stop_reason(), ""};
+  return Outcome{StopReason::kSolved, "no variable is free"};
+}
+
 int CeresThreads(const RunContext& context) {
   const auto available = static_cast<int>(std::thread::hardware_concurrency());
   return std::max(1, available > 0 ? std::min(context.threads(), available) : context.threads());

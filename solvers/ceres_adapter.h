@@ -5,6 +5,7 @@
 #include <ceres/solver.h>
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "solvers/solver.h"
@@ -53,6 +54,10 @@ void LeaveStoppingToRunControl(IterateBooker* booker, Options* options) {
 
 /// "Ceres: Parameter tolerance reached": the first clause of Ceres' own message.
 std::string ShortReason(const std::string& message);
+
+/// The whole run where no variable is free, which Ceres does not take; otherwise nothing.
+std::optional<Outcome> RunWithoutVariables(const Objective& objective, RunContext* context,
+                                           const Eigen::VectorXd& x);
 
 /// Threads that Ceres takes without a warning: context->threads(), at most what the machine has.
 int CeresThreads(const RunContext& context);

@@ -119,11 +119,7 @@ void CeresLbfgsSolver::SetOptions(Options* ceres_options) const {
 
 Outcome CeresLbfgsSolver::DoMinimize(Objective* objective, RunContext* context,
                                      Eigen::VectorXd* x) {
-  if (objective->num_variables() == 0) {
-    const Status status = context->Iterate(*x);
-    return status == Status::kOk ? Outcome{StopReason::kSolved, "no variable is free"}
-                                 : Outcome{context->stop_reason(), ""};
-  }
+  if (const auto outcome = RunWithoutVariables(*objective, context, *x)) return *outcome;
   return options_.Word("form") == "objective" ? MinimizeObjective(objective, context, x)
                                               : MinimizeCeresProblem(objective, context, x);
 }

@@ -1,5 +1,7 @@
 #include "solvers/ceres_lm.h"
 
+#include <algorithm>
+
 #include "solvers/ceres_adapter.h"
 #include "solvers/ceres_problem.h"
 
@@ -26,6 +28,18 @@ ceres::LinearSolverType LinearSolverType(const std::string& word) {
   return word == "cgnr" ? ceres::CGNR : ceres::SPARSE_NORMAL_CHOLESKY;
 }
 
+/// Where E is quadratic one undamped step solves it. A first radius of 1e12 damps that step by 1e-12 only, and still holds
+/// the directions that a rank-deficient problem leaves open near the start.
+double FirstRadius(const OptionValues& options, const Problem& problem) {
+  constexpr double kCeresDefault = 1e4;
+  constexpr double kForQuadratics = 1e12;
+  if (options.Real("radius") > 0.0) return options.Real("radius");
+  const bool is_quadratic = std::all_of(
+      problem.terms().begin(), problem.terms().end(),
+      [](const Problem::TermInstance& term) { return term.family->rows() != nullptr; });
+  return is_quadratic && !problem.has_bounds() ? kForQuadratics : kCeresDefault;
+}
+
 }  // namespace
 
 SolverInfo CeresLmSolver::ClassInfo() {
@@ -43,7 +57,9 @@ SolverInfo CeresLmSolver::ClassInfo() {
                         "cgnr"},
                        "what solves for a step; auto: sparse_normal_cholesky if Ceres has it, else "
                        "dense_qr"),
-      OptionInfo::Real("radius", 1e4, 1e-30, 1e16, "first size of the trust region"),
+      OptionInfo::Real("radius", 0.0, 0.0, 1e16,
+                       "first size of the trust region; 0: 1e12 where E is quadratic and nothing is "
+                       "bounded, else 1e4, the default of Ceres"),
   };
   return info;
 }
@@ -60,6 +76,7 @@ std::string CeresLmSolver::WhyUnsupported(const Objective& objective) const {
 }
 
 Outcome CeresLmSolver::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
+  if (const auto outcome = RunWithoutVariables(*objective, context, *x)) return *outcome;
   CeresProblem problem(objective, Evaluation::kJacobian, *x);
   problem.AddTerms();
   IterateBooker booker(context, &problem.state());
@@ -70,7 +87,7 @@ Outcome CeresLmSolver::DoMinimize(Objective* objective, RunContext* context, Eig
                                                  : ceres::LEVENBERG_MARQUARDT;
   ceres_options.linear_solver_type = LinearSolverType(LinearSolverWord(options_));
   ceres_options.sparse_linear_algebra_library_type = SparseLibrary();
-  ceres_options.initial_trust_region_radius = options_.Real("radius");
+  ceres_options.initial_trust_region_radius = FirstRadius(options_, objective->problem());
   ceres_options.num_threads = CeresThreads(*context);
   LeaveStoppingToRunControl(&booker, &ceres_options);
   ceres::Solver::Summary summary;

@@ -2,7 +2,9 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solvers/ceres_spans.h"
 #include "solvers/eliminated_cost.h"

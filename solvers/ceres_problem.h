@@ -1,7 +1,9 @@
 #ifndef BATTEN_SOLVERS_CERES_PROBLEM_H_
 #define BATTEN_SOLVERS_CERES_PROBLEM_H_
 
+#include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
+#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
 #include <memory>
@@ -25,6 +27,8 @@ class CeresProblem final : private ceres::EvaluationCallback {
   /// `x`: the start in the free variables; it is moved into the bounds. An evaluation counts as one
   /// of kEnergy and, where Ceres wants derivatives, as one of `derivative` as well.
   CeresProblem(Objective* objective, Evaluation derivative, const Eigen::VectorXd& x);
+  CeresProblem(const CeresProblem&) = delete;
+  CeresProblem& operator=(const CeresProblem&) = delete;
 
   /// All blocks of all terms: the families' own, or where linear constraints determine one of a
   /// block's variables, its like in the free ones. Either this or AddSpans, once.

@@ -17,13 +17,14 @@ constexpr double kDecayed = 1e-200;
 constexpr int kDecayInterval = 8;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kLargest = std::numeric_limits<double>::max();
 
 /// Row-major size x size, upper triangle, in place: N = U' D U, U with unit diagonal; 1 / D takes
 /// the place of the diagonal. False if a pivot is not above its limit.
 bool FactorDense(int size, const double* limits, double* u) {
   for (int j = 0; j < size; ++j) {
     const double pivot = u[j * size + j];
-    if (!(pivot > limits[j]) || !std::isfinite(pivot)) return false;
+    if (!(pivot > limits[j] && pivot <= kLargest)) return false;
     const double inverse = 1.0 / pivot;
     for (int i = j + 1; i < size; ++i) {
       const double factor = u[j * size + i] * inverse;
@@ -70,9 +71,9 @@ double OneNorm(const std::vector<double>& x) {
 
 }  // namespace
 
-/// What the eliminated rows have added to the rows that follow.
+/// What is left of the rows after the eliminated ones.
 struct BandedCholesky::Pending {
-  std::vector<double> band;    // width x width: rows j.., columns from the diagonal on
+  std::vector<double> band;    // width x width: rows j.., row i from its diagonal to j + width - 2
   std::vector<double> border;  // (width - 1) x (width - 1): rows j.., border columns
   std::vector<double> corner;  // border x border
 };
@@ -80,17 +81,18 @@ struct BandedCholesky::Pending {
 bool BandedCholesky::Factor(const NormalBand& matrix) {
   n_ = matrix.size();
   width_ = matrix.width();
-  const int border = std::max(width_ - 1, 0);
-  const bool overlaps = matrix.cyclic() && n_ < 2 * width_ - 1;
-  num_border_ = matrix.cyclic() && !overlaps ? border : 0;
-  const int dense_size = overlaps ? n_ : std::min(n_, border + num_border_);
-  num_swept_ = n_ - dense_size;
+  norm_ = 0.0;
   num_bordered_ = 0;
   border_.clear();
+  dense_.clear();
+  if (width_ == 0) return n_ == 0;
+  const bool overlaps = matrix.cyclic() && n_ < 2 * width_ - 1;
+  num_border_ = matrix.cyclic() && !overlaps ? width_ - 1 : 0;
+  const int dense_size = overlaps ? n_ : std::min(n_, width_ - 1 + num_border_);
+  num_swept_ = n_ - dense_size;
   const std::vector<double> diagonal = matrix.Diagonal();
   largest_diagonal_ = 0.0;
   for (const double entry : diagonal) largest_diagonal_ = std::max(largest_diagonal_, entry);
-  norm_ = 0.0;
   for (const double sum : matrix.AbsoluteRowSums()) norm_ = std::max(norm_, sum);
 
   Pending pending = FirstPending(matrix.band());
@@ -106,11 +108,15 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
 }
 
 BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& band) const {
-  const int border = std::max(width_ - 1, 0);
+  const int border = width_ - 1;
   Pending pending;
   pending.band.assign(width_ * width_, 0.0);
   pending.border.assign(num_border_ * num_border_, 0.0);
   pending.corner.assign(num_border_ * num_border_, 0.0);
+  for (int i = 0; i < std::min(border, n_); ++i) {
+    std::copy_n(band.data() + i * width_, std::min(border, n_) - i,
+                pending.band.data() + i * width_);
+  }
   // Entry k of border row b stands in column b + k - border, past the end of the matrix.
   for (int b = 0; b < num_border_; ++b) {
     const double* row = band.data() + static_cast<std::size_t>(n_ - num_border_ + b) * width_;
@@ -121,34 +127,56 @@ BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& 
   return pending;
 }
 
+// Loops over the window are unrolled by order: its entries then are registers, while an array in
+// memory would be written in other pieces than it is read, which stalls.
 template <int kWidth>
 bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
   const int width = kWidth > 0 ? kWidth : width_;
-  // Of a size known to the compiler where the width is, so that it stays in registers.
   using Window = std::conditional_t<(kWidth > 0), std::array<double, std::max(kWidth * kWidth, 1)>,
                                     std::vector<double>>;
-  Window window;
-  if constexpr (kWidth < 0) window.resize(pending->band.size());
-  std::copy(pending->band.begin(), pending->band.end(), window.begin());
+  Window window;  // what is left of rows j.., row i from its diagonal to column j + width - 1
+  Window row;     // the first of the window
+  if constexpr (kWidth < 0) {
+    window.resize(width * width);
+    row.resize(width);
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < width; ++i) {
+#pragma GCC unroll 8
+    for (int k = 0; k < width; ++k) window[i * width + k] = pending->band[i * width + k];
+  }
   bool bordered = num_border_ > 0;
+  const double pivot_tolerance = n_ * kEpsilon;
   for (int j = 0; j < num_swept_; ++j) {
     const double* entry = band.data() + static_cast<std::size_t>(j) * width;
     double* u = factor_.data() + static_cast<std::size_t>(j) * width;
-    const double pivot = entry[0] + window[0];
-    if (!(pivot > n_ * kEpsilon * entry[0]) || !std::isfinite(pivot)) return false;
+#pragma GCC unroll 8
+    for (int i = 0; i < width; ++i) {
+      window[i * width + width - 1 - i] = entry[i * width + width - 1 - i];
+    }
+#pragma GCC unroll 8
+    for (int k = 0; k < width; ++k) row[k] = window[k];
+    const double pivot = row[0];
+    if (!(pivot > pivot_tolerance * entry[0] && pivot <= kLargest)) return false;
     const double inverse = 1.0 / pivot;
-    for (int k = 1; k < width; ++k) u[k] = entry[k] + window[k];
+    // Products before the quotient: they need not wait for it.
+#pragma GCC unroll 8
     for (int i = 1; i < width; ++i) {
-      const double factor = u[i] * inverse;
+#pragma GCC unroll 8
       for (int k = i; k < width; ++k) {
-        window[(i - 1) * width + k - i] = window[i * width + k - i] - factor * u[k];
+        window[(i - 1) * width + k - i] =
+            window[i * width + k - i] - row[i] * row[k] * inverse;
       }
-      u[i] = factor;
+      u[i] = row[i] * inverse;
     }
     u[0] = inverse;
     if (bordered) bordered = SweepBorder<kWidth>(j, u, pending);
   }
-  std::copy_n(window.begin(), pending->band.size(), pending->band.begin());
+#pragma GCC unroll 8
+  for (int i = 0; i < width; ++i) {
+#pragma GCC unroll 8
+    for (int k = 0; k < width; ++k) pending->band[i * width + k] = window[i * width + k];
+  }
   return true;
 }
 
@@ -190,7 +218,7 @@ void BandedCholesky::FillDense(const NormalBand& matrix, const Pending& pending)
   }
   const int inner = size - num_border_;
   for (int i = 0; i < inner; ++i) {
-    for (int k = 0; i + k < inner; ++k) dense_[i * size + i + k] += pending.band[i * width_ + k];
+    for (int k = 0; i + k < inner; ++k) dense_[i * size + i + k] = pending.band[i * width_ + k];
     for (int b = 0; b < num_border_; ++b) {
       dense_[i * size + inner + b] += pending.border[i * num_border_ + b];
     }

@@ -8,10 +8,6 @@
 namespace batten {
 namespace {
 
-/// Rows of one window that are collected before they are folded: four square roots and divisions
-/// per fold are then shared by more rows.
-constexpr int kRowsPerFold = 2 * kMaxRowsPerBlock;
-
 /// Carried entries below this, relative to the largest of the triangle, are zero: they could only
 /// add squares that underflow.
 constexpr double kDecayed = 1e-140;
@@ -88,8 +84,7 @@ void BandedQr::FoldPending() {
   const int first_border = shape_.num_columns - num_border_;
   double* triangle = wraps ? wrapped_.data() + (pending_column_ - first_border) * row_size_
                            : triangle_.data() + static_cast<std::size_t>(pending_column_) * row_size_;
-  const PackedRows rows = {AsPacks(pending_.data()), num_pending_ / kPackLanes,
-                           kRowsPerFold / kPackLanes};
+  const PackedRows rows = {AsPacks(pending_.data()), num_pending_ / kPackLanes, kFoldStride};
   residual_ += WithFixedShape(width_, shape_.dimension, [&](auto width, auto dimension) {
     return FoldRows<width, dimension>(width_, shape_.dimension, rows, triangle, row_size_);
   });
@@ -155,8 +150,10 @@ void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last)
     for (int k = i; k < size; ++k) carried(i, k < num_border_ ? k : k + 1) = row[k - i];
     for (int c = 0; c < d; ++c) carried(i, width_ + num_border_ + c) = row[size + c];
   }
-  double scale = 0.0;
-  for (const double entry : triangle_) scale = std::max(scale, std::abs(entry));
+  double scale = 0.0;  // so far the whole diagonal of R is in the band
+  for (int j = 0; j < shape_.num_columns; ++j) {
+    scale = std::max(scale, std::abs(triangle_[static_cast<std::size_t>(j) * row_size_]));
+  }
   std::vector<double> row(1 + others);
   double* const border = row.data() + width_;
   for (int j = 0; j < num_swept_; ++j) {
@@ -228,7 +225,25 @@ Points BandedQr::TriangleRightHandSide() const {
   return right;
 }
 
+template <int kDimension>
+void BandedQr::SolveTriangleFixed(double* x) const {
+  for (int j = shape_.num_columns - 1; j >= 0; --j) {
+    double* const target = x + static_cast<std::size_t>(j) * kDimension;
+    double sum[kDimension];  // not in memory: each entry would wait for the one before
+    for (int c = 0; c < kDimension; ++c) sum[c] = target[c];
+    VisitRow(j, [&](int column, double entry) {
+      const double* source = x + static_cast<std::size_t>(column) * kDimension;
+      for (int c = 0; c < kDimension; ++c) sum[c] -= entry * source[c];
+    });
+    const double pivot = DiagonalEntry(j);
+    for (int c = 0; c < kDimension; ++c) target[c] = sum[c] / pivot;
+  }
+}
+
 void BandedQr::SolveTriangle(int dimension, double* x) const {
+  if (dimension == 1) return SolveTriangleFixed<1>(x);
+  if (dimension == 2) return SolveTriangleFixed<2>(x);
+  if (dimension == 3) return SolveTriangleFixed<3>(x);
   for (int j = shape_.num_columns - 1; j >= 0; --j) {
     double* const target = x + static_cast<std::size_t>(j) * dimension;
     VisitRow(j, [&](int column, double entry) {

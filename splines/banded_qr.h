@@ -52,6 +52,8 @@ class BandedQr : public RowConsumer {
   /// Folds the upper half of the wrapped rows' triangle along the band; what is left of them in
   /// the last 2 width - 2 columns goes to `last`.
   void CarryAlong(const std::vector<double>& reordered, RowBuffer* last);
+  template <int kDimension>
+  void SolveTriangleFixed(double* x) const;
   double DiagonalEntry(int j) const;
   const double* RightHandSide(int j) const;
   /// visit(column, entry) for the entries of row j of R beside the diagonal.

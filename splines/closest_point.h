@@ -12,17 +12,19 @@ struct FootPoint {
   double squared_distance = 0.0;
 };
 
-/// Closest points on one curve: the nearest of evenly spread samples (8 per span and degree), found
-/// through a tree of bounding boxes over runs of samples, then Newton's method on
-/// (C(t) - Q) . C'(t) = 0 (Piegl & Tiller, sec. 6.1), safeguarded: it stays between the samples'
-/// neighbours, and after a step that raises the distance comes a bisection. A foot that lies
-/// between samples of a narrow detail can be missed: this one is for reports, not certified.
+/// Closest points on one curve. Between evenly spread samples (8 per span and degree, step h) the
+/// curve stays within e = h^2 max |C''| / 8 of its chords; a tree of bounding boxes over runs of
+/// chords finds all pieces that can hold the foot, and in each of them Newton's method solves
+/// (C(t) - Q) . C'(t) = 0 (Piegl & Tiller, sec. 6.1), safeguarded: it stays in the piece, and after
+/// a step that raises the distance comes a bisection. A piece in which the distance has several
+/// minima may give the wrong one, so that the distance is too large by 2 e at most.
 class ClosestPoint {
  public:
   explicit ClosestPoint(const BsplineCurve& curve);  ///< Keeps a reference to `curve`.
-  /// `point` has d coordinates. `start` (a parameter in the domain) competes with the samples'
-  /// best, so that the result is never farther than C(start), to rounding. A point or curve that is
-  /// not finite gives some parameter and a distance that is not finite.
+  /// `point` has d coordinates. `start` (a parameter in the domain) competes with all pieces, so
+  /// that the result is never farther than C(start), to rounding, and equally far feet do not take
+  /// turns. A point or curve that is not finite gives some parameter and a distance that is not
+  /// finite.
   FootPoint Find(const double* point, double start) const;
 
  private:
@@ -30,14 +32,22 @@ class ClosestPoint {
     double low[kMaxDimension];
     double high[kMaxDimension];
   };
-  int NearestSample(const double* point) const;
-  FootPoint Refine(const double* point, double low, double start, double high) const;
-  double SquaredDistance(const double* point, double t) const;
+  /// A chord's distance less what the curve may be off it, and the parameter of its nearest point.
+  struct Piece {
+    int index;
+    double squared_bound;
+    double start;
+  };
+  void SampleSpans();
+  void BuildBoxes();
+  Piece MakePiece(const double* point, int index) const;
 
   const BsplineCurve& curve_;
+  std::vector<int> spans_;          // those not empty
+  std::vector<double> deviations_;  // e, one a span
   std::vector<double> sample_parameters_;
   Points samples_;
-  // levels_[0]: boxes of runs of samples; each next: of pairs.
+  // levels_[0]: boxes of runs of pieces; each next: of pairs.
   std::vector<std::vector<Box>> levels_;
 };
 

@@ -8,13 +8,21 @@
 
 namespace batten {
 
+/// Rows of one window that are folded at a time, at most: square roots and divisions per fold are
+/// then shared by more rows than a block has.
+inline constexpr int kRowsPerFold = 2 * kMaxRowsPerBlock;
+
 /// Rows to be folded, column by column, coefficients first, then right-hand sides: entry (i, k)
 /// stands at columns[k * stride + i], counted in packs of rows. Internal to splines/.
 struct PackedRows {
   RowPack* columns = nullptr;
   int packs = 0;
-  int stride = 0;  // in packs
+  int stride = 0;
 };
+
+/// The stride where width and dimension are fixed too: all columns are then offsets from one
+/// register.
+inline constexpr int kFoldStride = kRowsPerFold / kPackLanes;
 
 /// The Householder reflection I - gamma v v' of v = (pivot - beta, b), which takes (pivot, b) to
 /// (beta, 0). Nothing happens if b'b underflows: with b below 1e-150 gamma would overflow.
@@ -42,7 +50,7 @@ class Reflection {
 /// One pass over the rows: reflects columns kFirst.. with the factors of column kFirst - 1 and sums
 /// the inner products of column kFirst with itself and those after it.
 template <int kColumns, int kFirst>
-void ReflectAndMultiply(const PackedRows& rows, const double* factors, double* dots) {
+void ReflectAndMultiply(PackedRows rows, const double* factors, double* dots) {
   RowPack factor[kColumns];
   RowPack sum[kColumns];
   for (int k = kFirst; k < kColumns; ++k) {
@@ -51,13 +59,13 @@ void ReflectAndMultiply(const PackedRows& rows, const double* factors, double* d
   }
   for (int i = 0; i < rows.packs; ++i) {
     RowPack* const row = rows.columns + i;
-    const RowPack previous = kFirst > 0 ? row[(kFirst - 1) * rows.stride] : RowPack{};
+    const RowPack previous = kFirst > 0 ? row[(kFirst - 1) * kFoldStride] : RowPack{};
     RowPack head = {};
     for (int k = kFirst; k < kColumns; ++k) {
-      RowPack entry = row[k * rows.stride];
+      RowPack entry = row[k * kFoldStride];
       if (kFirst > 0) {
         entry -= factor[k] * previous;
-        row[k * rows.stride] = entry;
+        row[k * kFoldStride] = entry;
       }
       if (k == kFirst) head = entry;
       sum[k] += head * entry;
@@ -68,12 +76,12 @@ void ReflectAndMultiply(const PackedRows& rows, const double* factors, double* d
 
 /// The last pass: the squared norm of what is left of the right-hand sides.
 template <int kWidth, int kDimension>
-double SquaredRemainder(const PackedRows& rows, const double* factors) {
+double SquaredRemainder(PackedRows rows, const double* factors) {
   RowPack sum = {};
   for (int c = 0; c < kDimension; ++c) {
     const RowPack factor = Broadcast(factors[kWidth + c]);
-    const RowPack* pivot = rows.columns + (kWidth - 1) * rows.stride;
-    const RowPack* column = rows.columns + (kWidth + c) * rows.stride;
+    const RowPack* pivot = rows.columns + (kWidth - 1) * kFoldStride;
+    const RowPack* column = rows.columns + (kWidth + c) * kFoldStride;
     for (int i = 0; i < rows.packs; ++i) {
       const RowPack entry = column[i] - factor * pivot[i];
       sum += entry * entry;
@@ -83,7 +91,7 @@ double SquaredRemainder(const PackedRows& rows, const double* factors) {
 }
 
 template <int kWidth, int kDimension, int kFirst = 0>
-double FoldFixed(const PackedRows& rows, double* triangle, std::ptrdiff_t triangle_stride,
+double FoldFixed(PackedRows rows, double* triangle, std::ptrdiff_t triangle_stride,
                  double* factors) {
   constexpr int kColumns = kWidth + kDimension;
   double dots[kColumns];
@@ -102,14 +110,8 @@ double FoldFixed(const PackedRows& rows, double* triangle, std::ptrdiff_t triang
   }
 }
 
-inline double DotPacks(const RowPack* a, const RowPack* b, int packs) {
-  RowPack sum = {};
-  for (int i = 0; i < packs; ++i) sum += a[i] * b[i];
-  return SumOfLanes(sum);
-}
-
 /// Any width and number of right-hand sides.
-inline double FoldAny(int width, int dimension, const PackedRows& rows, double* triangle,
+inline double FoldAny(int width, int dimension, PackedRows rows, double* triangle,
                       std::ptrdiff_t triangle_stride) {
   for (int j = 0; j < width; ++j) {
     RowPack* const pivot = rows.columns + j * rows.stride;
@@ -136,9 +138,10 @@ inline double FoldAny(int width, int dimension, const PackedRows& rows, double* 
 /// Householder QR of [triangle; rows], in place. Row j of the triangle starts at
 /// triangle[j * triangle_stride] with entries (j, j), (j, j + 1), ..., its right-hand sides follow
 /// at [width]. Returns the squared norm of the right-hand sides left in the rows; the rows
-/// themselves are destroyed. kWidth < 0: any width and dimension.
+/// themselves are destroyed. kWidth > 0 needs a stride of kFoldStride, kWidth < 0 takes any width,
+/// dimension and stride.
 template <int kWidth, int kDimension>
-double FoldRows(int width, int dimension, const PackedRows& rows, double* triangle,
+double FoldRows(int width, int dimension, PackedRows rows, double* triangle,
                 std::ptrdiff_t triangle_stride) {
   if constexpr (kWidth > 0) {
     double factors[kWidth + kDimension];

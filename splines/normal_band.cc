@@ -42,33 +42,26 @@ void AddGramPasses(const RowPack* columns, int packs, double* gram) {
   }
 }
 
-double Dot(const RowPack* a, const RowPack* b, int packs) {
-  RowPack sum = {};
-  for (int i = 0; i < packs; ++i) sum += a[i] * b[i];
-  return SumOfLanes(sum);
-}
-
-/// gram = the rows of [A|Q]'[A|Q] that belong to A, upper triangle. The right-hand sides need not
-/// follow the coefficients.
+/// gram = the rows of [A|Q]'[A|Q] that belong to A, upper triangle; returns ||Q||^2.
 template <int kWidth, int kDimension>
-void BlockGram(const RowShape& shape, const RowBlock& block, double* gram) {
+double BlockGram(const RowShape& shape, const RowBlock& block, double* gram) {
   const int packs = block.stride / kPackLanes;
   const RowPack* a = AsPacks(block.coefficients);
-  if constexpr (kWidth > 0) {
-    if (block.right_hand_sides == block.coefficients + kWidth * block.stride) {
-      AddGramPasses<0, kWidth, kWidth + kDimension>(a, packs, gram);
-      return;
-    }
-  }
   const RowPack* q = AsPacks(block.right_hand_sides);
-  const int columns = shape.width + shape.dimension;
-  for (int j = 0; j < shape.width; ++j) {
-    double* row = gram + j * columns;
-    for (int k = j; k < shape.width; ++k) row[k] = Dot(a + j * packs, a + k * packs, packs);
-    for (int c = 0; c < shape.dimension; ++c) {
-      row[shape.width + c] = Dot(a + j * packs, q + c * packs, packs);
+  // The kernel takes right-hand sides that follow the coefficients, as almost everywhere.
+  if (kWidth > 0 && q == a + shape.width * packs) {
+    if constexpr (kWidth > 0) AddGramPasses<0, kWidth, kWidth + kDimension>(a, packs, gram);
+  } else {
+    const int columns = shape.width + shape.dimension;
+    for (int j = 0; j < shape.width; ++j) {
+      double* row = gram + j * columns;
+      for (int k = j; k < shape.width; ++k) row[k] = DotPacks(a + j * packs, a + k * packs, packs);
+      for (int c = 0; c < shape.dimension; ++c) {
+        row[shape.width + c] = DotPacks(a + j * packs, q + c * packs, packs);
+      }
     }
   }
+  return DotPacks(q, q, shape.dimension * packs);
 }
 
 }  // namespace
@@ -79,29 +72,35 @@ NormalBand::NormalBand(const RowShape& shape)
       right_hand_side_(Points::Zero(shape.num_columns, shape.dimension)),
       gram_(static_cast<std::size_t>(shape.width) * (shape.width + shape.dimension)) {}
 
-void NormalBand::Consume(const RowBlock& block) {
-  WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
-    BlockGram<width, dimension>(shape_, block, gram_.data());
-  });
-  const int width = shape_.width;
-  const int d = shape_.dimension;
+template <int kWidth, int kDimension>
+void NormalBand::Add(const RowBlock& block) {
+  double* const gram = gram_.data();
+  squared_norm_of_data_ += BlockGram<kWidth, kDimension>(shape_, block, gram);
+  const int width = kWidth > 0 ? kWidth : shape_.width;
+  const int d = kWidth > 0 ? kDimension : shape_.dimension;
   for (int j = 0; j < width; ++j) {
     const int column = WrappedColumn(block.first_column + j);
-    const double* row = gram_.data() + j * (width + d);
+    const double* row = gram + j * (width + d);
     double* target = band_.data() + static_cast<std::size_t>(column) * width;
     for (int k = j; k < width; ++k) target[k - j] += row[k];
     double* right = right_hand_side_.data() + static_cast<std::size_t>(column) * d;
     for (int c = 0; c < d; ++c) right[c] += row[width + c];
   }
-  const RowPack* q = AsPacks(block.right_hand_sides);
-  const int packs = block.stride / kPackLanes;
-  squared_norm_of_data_ += Dot(q, q, d * packs);
+}
+
+void NormalBand::Consume(const RowBlock& block) {
+  WithFixedShape(shape_.width, shape_.dimension,
+                 [&](auto width, auto dimension) { Add<width, dimension>(block); });
 }
 
 NormalBand NormalBand::FromRows(const RowSource& source) {
   NormalBand matrix(source.shape());
   source.Stream(&matrix);
   return matrix;
+}
+
+bool NormalBand::Overlaps() const {
+  return shape_.cyclic && shape_.num_columns < 2 * shape_.width - 1;
 }
 
 int NormalBand::WrappedColumn(int column) const {
@@ -131,16 +130,23 @@ void NormalBand::MultiplyRow(int j, const double* v, double* product) const {
 
 template <int kWidth, int kDimension>
 void NormalBand::MultiplyInside(int begin, int end, const double* v, double* product) const {
-  const int width = kWidth > 0 ? kWidth : shape_.width;
-  const int d = kWidth > 0 ? kDimension : shape_.dimension;
-  for (int j = begin; j < end; ++j) {
-    const double* entry = band_.data() + static_cast<std::size_t>(j) * width;
-    const double* near = v + static_cast<std::size_t>(j) * d;
-    for (int c = 0; c < d; ++c) {
-      double sum = 0.0;
-      for (int k = width - 1; k > 0; --k) sum += entry[k - k * width] * near[c - k * d];
-      for (int k = 0; k < width; ++k) sum += entry[k] * near[k * d + c];
-      product[static_cast<std::size_t>(j) * d + c] = sum;
+  if constexpr (kWidth < 0) {
+    for (int j = begin; j < end; ++j) MultiplyRow(j, v, product);
+  } else {
+    for (int j = begin; j < end; ++j) {
+      const double* entry = band_.data() + static_cast<std::size_t>(j) * kWidth;
+      const double* near = v + static_cast<std::size_t>(j) * kDimension;
+      double sum[kDimension] = {};
+      for (int k = kWidth - 1; k > 0; --k) {
+        for (int c = 0; c < kDimension; ++c) {
+          sum[c] += entry[k - k * kWidth] * near[c - k * kDimension];
+        }
+      }
+      for (int k = 0; k < kWidth; ++k) {
+        for (int c = 0; c < kDimension; ++c) sum[c] += entry[k] * near[k * kDimension + c];
+      }
+      double* const target = product + static_cast<std::size_t>(j) * kDimension;
+      for (int c = 0; c < kDimension; ++c) target[c] = sum[c];
     }
   }
 }
@@ -174,6 +180,12 @@ void NormalBand::VisitUpperEntries(const Visitor& visit) const {
 
 std::vector<double> NormalBand::Diagonal() const {
   std::vector<double> diagonal(shape_.num_columns, 0.0);
+  if (!Overlaps()) {
+    for (int j = 0; j < shape_.num_columns && shape_.width > 0; ++j) {
+      diagonal[j] = band_[static_cast<std::size_t>(j) * shape_.width];
+    }
+    return diagonal;
+  }
   VisitUpperEntries([&](int row, int k, int column, double entry) {
     if (row == column) diagonal[row] += k == 0 ? entry : 2.0 * entry;
   });
@@ -182,16 +194,24 @@ std::vector<double> NormalBand::Diagonal() const {
 
 std::vector<double> NormalBand::AbsoluteRowSums() const {
   std::vector<double> sums(shape_.num_columns, 0.0);
-  if (shape_.cyclic && shape_.num_columns < 2 * shape_.width - 1) {
+  if (Overlaps()) {
     // Entries on one place add before their absolute value is taken.
     const Eigen::VectorXd dense = ToDense().cwiseAbs().rowwise().sum();
     std::copy_n(dense.data(), sums.size(), sums.begin());
     return sums;
   }
-  VisitUpperEntries([&](int row, int k, int column, double entry) {
-    sums[row] += std::abs(entry);
-    if (k > 0) sums[column] += std::abs(entry);
-  });
+  const int width = shape_.width;
+  const int inside_end = std::max(shape_.num_columns - width + 1, 0);
+  for (int j = 0; j < shape_.num_columns; ++j) {
+    const double* entry = band_.data() + static_cast<std::size_t>(j) * width;
+    if (width > 0) sums[j] += std::abs(entry[0]);
+    for (int k = 1; k < width; ++k) {
+      if (j >= inside_end && j + k >= shape_.num_columns && !shape_.cyclic) break;
+      const double size = std::abs(entry[k]);
+      sums[j] += size;
+      sums[j < inside_end ? j + k : WrappedColumn(j + k)] += size;
+    }
+  }
   return sums;
 }
 

@@ -39,10 +39,15 @@ class NormalBand : public RowConsumer {
   Eigen::MatrixXd ToDense() const;
 
  private:
+  /// Consume() for one width and dimension; kWidth < 0 takes both from the shape.
+  template <int kWidth, int kDimension>
+  void Add(const RowBlock& block);
+  /// Several entries of the band stand on one place of N.
+  bool Overlaps() const;
   int WrappedColumn(int column) const;
   /// Row j of the product, any j.
   void MultiplyRow(int j, const double* v, double* product) const;
-  /// Rows whose entries do not leave 0..n-1; kWidth < 0 takes width and dimension from the shape.
+  /// Rows whose entries do not leave 0..n-1.
   template <int kWidth, int kDimension>
   void MultiplyInside(int begin, int end, const double* v, double* product) const;
   /// visit(row, k, column, entry) for every entry of the band that stands for one of N.

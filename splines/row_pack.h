@@ -23,6 +23,17 @@ inline RowPack* AsPacks(double* aligned) { return reinterpret_cast<RowPack*>(ali
 inline RowPack Broadcast(double value) { return RowPack{value, value}; }
 inline double SumOfLanes(RowPack pack) { return pack[0] + pack[1]; }
 
+/// a'b over an even number of packs (any kRowPack has), in two sums: one alone would wait for itself.
+inline double DotPacks(const RowPack* a, const RowPack* b, int packs) {
+  RowPack even = {};
+  RowPack odd = {};
+  for (int i = 0; i < packs; i += 2) {
+    even += a[i] * b[i];
+    odd += a[i + 1] * b[i + 1];
+  }
+  return SumOfLanes(even + odd);
+}
+
 /// Scratch space for a RowBlock's arrays, all zero, aligned as they have to be.
 class RowStorage {
  public:

@@ -25,8 +25,8 @@ struct CommandOutput {
 /// One subcommand. Flags are parsed before `run` is called, which finds their values in FLAGS_...
 struct Command {
   std::string name;
-  std::string arguments;  // "FILE | --problem=NAME"
-  std::string summary;    // one line
+  std::string arguments;             // "FILE | --problem=NAME"
+  std::string summary;               // one line
   std::vector<std::string> details;  // paragraphs
   std::vector<std::string> examples;
   std::vector<FlagInfo> flags;

@@ -22,7 +22,9 @@ bool IsNumber(const FlagInfo& flag) {
   const std::string type = DefinedFlag(flag.name).type;
   return type != "bool" && type != "string";
 }
-bool IsWhole(const FlagInfo& flag) { return IsNumber(flag) && DefinedFlag(flag.name).type != "double"; }
+bool IsWhole(const FlagInfo& flag) {
+  return IsNumber(flag) && DefinedFlag(flag.name).type != "double";
+}
 
 std::string RangeText(const FlagInfo& flag) {
   const std::string from = (flag.above_lowest ? "above " : "") + NumberText(flag.lowest);
@@ -82,7 +84,8 @@ bool SetNumber(const FlagInfo& flag, const std::string& value, std::string* erro
   const bool kind_fits = !IsWhole(flag) || number == std::trunc(number);
   if (!in_range || !kind_fits) {
     const bool only_kind = in_range && !kind_fits;
-    *error = RefusedFlag(flag.name, value, (only_kind ? "whole numbers from " : "") + RangeText(flag));
+    *error =
+        RefusedFlag(flag.name, value, (only_kind ? "whole numbers from " : "") + RangeText(flag));
     return false;
   }
   // gflags reads no 1e3 as a whole number.
@@ -140,7 +143,8 @@ std::string HelpText(const FlagInfo& flag) {
 
 FlagInfo SwitchFlag(const std::string& name) { return {name, "", {}, 0.0, 0.0, false, ""}; }
 
-FlagInfo TextFlag(const std::string& name, const std::string& placeholder, const std::string& help) {
+FlagInfo TextFlag(const std::string& name, const std::string& placeholder,
+                  const std::string& help) {
   return {name, placeholder, {}, 0.0, 0.0, false, help};
 }
 

@@ -16,7 +16,7 @@ struct FlagInfo {
   std::vector<std::string> words;  // not empty: the only values
   double lowest = 0.0;             // of numbers; both ends allowed
   double highest = 0.0;
-  bool above_lowest = false;       // `lowest` itself is not allowed
+  bool above_lowest = false;  // `lowest` itself is not allowed
   std::string help;
 };
 

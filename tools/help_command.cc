@@ -1,5 +1,5 @@
-#include "experiments/build_info.h"
 #include "cost_functions/options.h"
+#include "experiments/build_info.h"
 #include "tools/command.h"
 
 namespace batten {
@@ -11,8 +11,9 @@ int RunHelp(const std::vector<std::string>& positional, CommandOutput* output) {
     return kDone;
   }
   if (positional.size() > 1) {
-    return Refuse("help: found " + std::to_string(positional.size()) + " names; allowed: one command",
-                  output);
+    return Refuse(
+        "help: found " + std::to_string(positional.size()) + " names; allowed: one command",
+        output);
   }
   const Command* command = FindCommand(positional.front());
   if (command == nullptr) {

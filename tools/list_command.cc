@@ -39,9 +39,12 @@ Json OptionsJson(const std::vector<OptionInfo>& options) {
 
 const char* ToString(NativeRule rule) {
   switch (rule) {
-    case NativeRule::kDirect: return "direct";
-    case NativeRule::kStep: return "step";
-    case NativeRule::kGradient: return "gradient";
+    case NativeRule::kDirect:
+      return "direct";
+    case NativeRule::kStep:
+      return "step";
+    case NativeRule::kGradient:
+      return "gradient";
   }
   return "";
 }

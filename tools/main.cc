@@ -77,8 +77,8 @@ void SilenceLogs(const char* program) {
   std::set_terminate(&OnTerminate);
 }
 
-/// A closed standard stream would give its number to the first file that is opened, which would then
-/// receive our messages.
+/// A closed standard stream would give its number to the first file that is opened, which would
+/// then receive our messages.
 void FillStandardStreams() {
   for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     // Not for writing: results that go nowhere are to be an error.

@@ -33,7 +33,8 @@ Progress::Progress(bool quiet) {
   const char* const terminal = std::getenv("TERM");
   const bool can_erase = terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
   if (!quiet) style_ = isatty(STDERR_FILENO) == 1 && can_erase ? Style::kBar : Style::kLines;
-  interval_ = style_ == Style::kBar ? Clock::duration(kBarInterval) : Clock::duration(kLineInterval);
+  interval_ =
+      style_ == Style::kBar ? Clock::duration(kBarInterval) : Clock::duration(kLineInterval);
   next_ = Clock::now() + interval_;
 }
 

@@ -6,8 +6,8 @@
 
 namespace batten {
 
-/// Progress on standard error: a bar on a terminal, now and then a line elsewhere, nothing if quiet.
-/// What is over quickly shows nothing. The bar is gone when this is.
+/// Progress on standard error: a bar on a terminal, now and then a line elsewhere, nothing if
+/// quiet. What is over quickly shows nothing. The bar is gone when this is.
 class Progress {
  public:
   explicit Progress(bool quiet);

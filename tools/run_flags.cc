@@ -20,11 +20,13 @@ DEFINE_double(gradient_tolerance, kDefaults.gradient_tolerance,
 DEFINE_int32(max_iterations, kDefaults.max_iterations, "Stop after this many iterations.");
 DEFINE_double(max_seconds, kDefaults.max_seconds,
               "Stop after this much of the solver's own wall time, in seconds.");
-DEFINE_double(native_step, kDefaults.native_step,
-              "Native: gim and lspia stop where no control point moves as far as this, in the data's "
-              "unit of length.");
-DEFINE_double(native_gradient, kDefaults.native_gradient,
-              "Native: gradient methods stop where |g| is below this, in the data's unit of length.");
+DEFINE_double(
+    native_step, kDefaults.native_step,
+    "Native: gim and lspia stop where no control point moves as far as this, in the data's "
+    "unit of length.");
+DEFINE_double(
+    native_gradient, kDefaults.native_gradient,
+    "Native: gradient methods stop where |g| is below this, in the data's unit of length.");
 DEFINE_uint64(seed, kDefaults.seed, "Of everything random.");
 DEFINE_int32(threads, kDefaults.threads, "Most threads of one run.");
 DEFINE_bool(compile, kDefaults.compile,

@@ -51,7 +51,7 @@ std::vector<LinearConstraint> AsList(const DenseConstraints& dense) {
 DenseConstraints RandomConstraints(int num_rows, int rank, int num_variables, double density,
                                    std::mt19937* random) {
   std::uniform_real_distribution<double> number(-1.0, 1.0);
-  const auto fill = [&](Eigen::Index rows, Eigen::Index cols, double filled) {
+  const auto fill = [&](int rows, int cols, double filled) {
     Eigen::MatrixXd matrix(rows, cols);
     for (double& entry : matrix.reshaped()) {
       entry = number(*random);

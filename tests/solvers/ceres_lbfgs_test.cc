@@ -4,40 +4,30 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 
+#include "problems/test_functions.h"
 #include "solvers/banded_qr.h"
-#include "tests/solvers/test_context.h"
 #include "tests/solvers/test_fits.h"
+#include "tests/solvers/trial.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
-CeresLbfgsSolver MakeSolver(const std::string& name_and_options) {
-  NameSpec spec;
-  OptionValues options;
-  std::string error;
-  CHECK(ParseNameSpec(name_and_options, &spec, &error)) << error;
-  CHECK(ResolveOptions(CeresLbfgsSolver::ClassInfo().options, spec, &options, &error)) << error;
-  return CeresLbfgsSolver(options);
+using LbfgsTrial = Trial<CeresLbfgsSolver>;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+const char* const kForms[] = {"objective", "problem", "spans"};
+
+std::string WithForm(const std::string& form) { return "ceres_lbfgs/form=" + form; }
+
+std::unique_ptr<Problem> Rhino() {
+  return MakeFileFit("animals/rhino_100.csv", MakeSpec(3, true, 40));
 }
-
-/// One run from the problem's start.
-struct Run {
-  Run(const Problem& problem, const std::string& name_and_options, TestContextOptions options = {},
-      bool compile = true)
-      : context(problem, options) {
-    Objective::Options objective_options;
-    objective_options.compile = compile;
-    Objective objective(&problem, &context, objective_options);
-    x = objective.start();
-    outcome = MakeSolver(name_and_options).Minimize(&objective, &context, &x);
-  }
-  TestContext context;
-  Eigen::VectorXd x;
-  Outcome outcome;
-};
 
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.size() == b.size() &&
@@ -45,7 +35,7 @@ bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 }
 
 /// Evaluation by evaluation: equal kinds at equal points, and the same end.
-void ExpectSameRun(const Run& a, const Run& b) {
+void ExpectSameTrial(const LbfgsTrial& a, const LbfgsTrial& b) {
   ASSERT_EQ(a.context.evaluations().size(), b.context.evaluations().size());
   for (std::size_t i = 0; i < a.context.evaluations().size(); ++i) {
     ASSERT_EQ(a.context.evaluations()[i].kind, b.context.evaluations()[i].kind) << i;
@@ -62,13 +52,8 @@ struct FormsCase {
   std::unique_ptr<Problem> (*make)();
 };
 
-std::ostream& operator<<(std::ostream& stream, const FormsCase& forms) {
-  return stream << forms.name;
-}
-
 const FormsCase kFormsCases[] = {
-    {"ClosedOutline",
-     [] { return MakeFileFit("animals/rhino_100.csv", MakeSpec(3, true, 40)); }},
+    {"ClosedOutline", [] { return Rhino(); }},
     {"ClosedOutlineOfManyPoints",
      [] { return MakeFileFit("animals/cat_2000.csv", MakeSpec(3, true, 100)); }},
     {"OpenAirfoil",
@@ -111,14 +96,146 @@ class CeresLbfgsForms : public ::testing::TestWithParam<FormsCase> {};
 
 TEST_P(CeresLbfgsForms, ObjectiveAndCeresProblemVisitTheSamePointsBitForBit) {
   const auto problem = GetParam().make();
-  const Run objective(*problem, "ceres_lbfgs/form=objective", {}, false);
-  const Run native(*problem, "ceres_lbfgs/form=problem", {}, false);
+  Objective::Options uncompiled;
+  uncompiled.compile = false;
+  const LbfgsTrial objective(*problem, WithForm("objective"), {}, uncompiled);
+  const LbfgsTrial native(*problem, WithForm("problem"), {}, uncompiled);
   ASSERT_GT(objective.context.iterates().size(), 10U);
-  ExpectSameRun(objective, native);
+  ExpectSameTrial(objective, native);
 }
 
 INSTANTIATE_TEST_SUITE_P(Problems, CeresLbfgsForms, ::testing::ValuesIn(kFormsCases),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& row) { return row.param.name; });
+
+TEST(CeresLbfgs, EveryFormComesAsNearToTheDirectAnswerAsItsLineSearchCanSee) {
+  // A line search stops where it cannot tell two values of E apart, hence at a gap of some roundings
+  // of E; the sums over 100 points and the spread of curvatures take up the rest.
+  const double kRoundings = 1e3;
+  const auto problem = Rhino();
+  const Trial<BandedQrSolver> direct(*problem, "banded_qr");
+  Objective objective(problem.get(), nullptr);
+  for (const char* form : kForms) {
+    LbfgsTrial trial(*problem, WithForm(form));
+    const Eigen::VectorXd error = trial.x - direct.x;
+    const double gap = objective.curve_view()->rows().SquaredNormOfProduct(error.data());
+    EXPECT_LE(gap, kRoundings * kEpsilon * trial.context.Energy(direct.x)) << form;
+  }
+}
+
+TEST(CeresLbfgs, BooksTheStartOnceAndEveryIterateAfterIt) {
+  const auto problem = Rhino();
+  TestContextOptions options;
+  options.max_iterations = 5;
+  for (const char* form : kForms) {
+    LbfgsTrial trial(*problem, WithForm(form), options);
+    EXPECT_EQ(trial.outcome.reason, StopReason::kIterationLimit) << form;
+    const auto& iterates = trial.context.iterates();
+    ASSERT_EQ(iterates.size(), 6U) << form;
+    EXPECT_EQ(iterates[0], problem->start()) << form;
+    EXPECT_EQ(iterates[5], trial.x) << form;
+    for (int i = 1; i <= 5; ++i) {
+      EXPECT_LT(trial.context.Energy(iterates[i]), trial.context.Energy(iterates[i - 1])) << form;
+    }
+  }
+}
+
+TEST(CeresLbfgs, BooksThePointThatCeresHidesWhenItsLineSearchEnds) {
+  const auto problem = Rhino();
+  TestContextOptions never;
+  never.gradient_tolerance = -1.0;
+  never.stop_at_rounding_floor = false;
+  for (const char* form : kForms) {
+    ::testing::internal::CaptureStderr();
+    LbfgsTrial trial(*problem, WithForm(form), never);
+    EXPECT_THAT(::testing::internal::GetCapturedStderr(), IsEmpty()) << form;
+    EXPECT_EQ(trial.outcome.reason, StopReason::kLineSearchEnded) << form;
+    EXPECT_THAT(trial.outcome.message, StartsWith("Ceres: ")) << form;
+    EXPECT_EQ(trial.context.iterates().back(), trial.x) << form;
+    const double best = trial.context.Energy(trial.x);
+    for (const auto& evaluated : trial.context.evaluations()) {
+      EXPECT_LE(best, trial.context.Energy(evaluated.x) * (1.0 + 10.0 * kEpsilon)) << form;
+    }
+  }
+}
+
+TEST(CeresLbfgs, StopsWhenTheMonitorSaysNoAndAsksItNoMore) {
+  const auto problem = Rhino();
+  for (const int max_energies : {0, 1, 7}) {
+    TestContextOptions options;
+    options.max_energies = max_energies;
+    for (const char* form : kForms) {
+      LbfgsTrial trial(*problem, WithForm(form), options);
+      EXPECT_EQ(trial.outcome.reason, StopReason::kTimeLimit) << form << max_energies;
+      EXPECT_EQ(trial.context.count(Evaluation::kEnergy), max_energies) << form;
+      EXPECT_EQ(trial.context.refused(), 1) << form << max_energies;
+      EXPECT_EQ(trial.context.iterates().back(), trial.x) << form << max_energies;
+      EXPECT_EQ(trial.context.iterates().front(), problem->start()) << form << max_energies;
+    }
+  }
+}
+
+TEST(CeresLbfgs, BooksAStartWithoutGradientOnce) {
+  const auto problem = MakeFit(MakeNoisyLoop(30, 2, 10), MakeSpec(3, true, 8, "interpolation/weight=0"));
+  for (const char* form : kForms) {
+    LbfgsTrial trial(*problem, WithForm(form));
+    EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << form;
+    EXPECT_EQ(trial.context.iterates().size(), 1U) << form;
+    EXPECT_EQ(trial.x, problem->start()) << form;
+  }
+}
+
+TEST(CeresLbfgs, MinimisesRosenbrockFromBothForms) {
+  const auto problem = MakeTestProblem("rosenbrock");
+  for (const char* form : {"objective", "problem"}) {
+    LbfgsTrial trial(*problem, WithForm(form));
+    EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << form;
+    // E = 100 (x1 - x0^2)^2 + (1 - x0)^2 has curvature 0.4 along its valley: an error e there is
+    // worth a gradient of 0.4 e.
+    const double tolerance = 1e-10 * trial.context.gradient_norms().front() / 0.4;
+    EXPECT_LE((trial.x - Eigen::Vector2d(1.0, 1.0)).norm(), tolerance) << form;
+  }
+}
+
+TEST(CeresLbfgs, MeetsLinearConstraintsInEveryForm) {
+  auto problem = Rhino();
+  SetConstraints({HoldCurve(*problem, 0.3, 0, 0.25), HoldCurve(*problem, 0.3, 1, -0.125)},
+                 problem.get());
+  const Trial<BandedQrSolver> direct(*problem, "banded_qr");
+  Objective objective(problem.get(), nullptr);
+  const double kRoundings = 1e3;
+  for (const char* form : kForms) {
+    LbfgsTrial trial(*problem, WithForm(form));
+    EXPECT_EQ(trial.x.size(), problem->num_variables() - 2) << form;
+    const Eigen::VectorXd error = trial.x - direct.x;
+    const double gap = objective.curve_view()->rows().SquaredNormOfProduct(error.data());
+    EXPECT_LE(gap, kRoundings * kEpsilon * trial.context.Energy(direct.x)) << form;
+  }
+}
+
+TEST(CeresLbfgs, EveryOptionChangesTheRunAndStillArrives) {
+  const auto problem = Rhino();
+  const LbfgsTrial plain(*problem, "ceres_lbfgs");
+  for (const char* option : {"memory=3", "scaling=on", "interpolation=quadratic",
+                             "interpolation=bisection", "decrease=0.3", "curvature=0.1"}) {
+    LbfgsTrial trial(*problem, std::string("ceres_lbfgs/") + option);
+    EXPECT_NE(trial.context.evaluations().size(), plain.context.evaluations().size()) << option;
+    // Line searches end at the root of eps times E over the gap of the start, about 1e-8 here.
+    EXPECT_LE(trial.gradient_ratio(), 1e-6) << option;
+  }
+}
+
+TEST(CeresLbfgs, SaysWhyNot) {
+  auto robust = MakeFit(MakeNoisyLoop(30, 2, 11), MakeSpec(3, true, 8, "interpolation/loss=huber"));
+  EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, "ceres_lbfgs"), IsEmpty());
+  EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, WithForm("spans")),
+              HasSubstr("ceres_lbfgs/form=spans needs terms that are affine"));
+  EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, "ceres_lbfgs/decrease=0.4/curvature=0.3"),
+              HasSubstr("decrease is 0.4, curvature 0.3"));
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(robust->num_variables());
+  robust->SetBounds(-one, one);
+  EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, "ceres_lbfgs"),
+              HasSubstr("ceres_lbfgs ignores bounds; use ceres_lm"));
+}
 
 }  // namespace
 }  // namespace batten

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "problems/fit_problem.h"
+#include "splines/basis_functions.h"
 
 namespace batten {
 
@@ -62,6 +63,29 @@ inline std::unique_ptr<Problem> MakeFit(DataSet data, FitSpec spec) {
   std::unique_ptr<Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
   CHECK(problem != nullptr) << error;
   return problem;
+}
+
+/// sum_j B_j(t) P_j = value in coordinate `coordinate`, inside the problem (scaled); t in the domain.
+inline LinearConstraint HoldCurve(const Problem& problem, double t, int coordinate, double value) {
+  const CurveFit& fit = *problem.curve_fit();
+  const BsplineBasis& basis = fit.basis();
+  const int span = basis.FindSpan(t);
+  std::vector<double> values(static_cast<std::size_t>(basis.order()));
+  EvaluateBasis(basis.degree(), basis.knots().data(), span, t, values.data());
+  LinearConstraint constraint;
+  constraint.name = "curve held";
+  constraint.value = value;
+  for (int j = 0; j < basis.order(); ++j) {
+    const int point = basis.ControlPointIndex(span - basis.degree() + j);
+    constraint.coefficients.emplace_back(point * fit.dimension() + coordinate,
+                                         values[static_cast<std::size_t>(j)]);
+  }
+  return constraint;
+}
+
+inline void SetConstraints(const std::vector<LinearConstraint>& constraints, Problem* problem) {
+  std::string error;
+  CHECK(problem->SetLinearConstraints(constraints, &error)) << error;
 }
 
 }  // namespace batten

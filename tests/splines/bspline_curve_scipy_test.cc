@@ -11,21 +11,6 @@
 namespace batten {
 namespace {
 
-BsplineBasis Make(int degree, bool periodic, const std::vector<double>& knots) {
-  std::string error;
-  const auto basis = BsplineBasis::Make(degree, periodic, knots, &error);
-  EXPECT_TRUE(basis.has_value()) << error;
-  return basis.value();
-}
-
-Points MakePoints(const std::vector<std::vector<double>>& rows) {
-  Points points(rows.size(), rows[0].size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t c = 0; c < rows[i].size(); ++c) points(i, c) = rows[i][c];
-  }
-  return points;
-}
-
 // t, then x and y of derivatives 0, 1, ..., p.
 struct Reference {
   double t;
@@ -62,8 +47,8 @@ const std::vector<std::vector<double>> kEightPoints = {{0.0, 1.0},  {0.7, -0.4},
 
 TEST(BsplineCurve, CubicWithADoubleKnotMatchesScipy) {
   const std::vector<std::vector<double>> points(kEightPoints.begin(), kEightPoints.begin() + 7);
-  const BsplineCurve curve(Make(3, false, {0, 0, 0, 0, 0.3, 0.5, 0.5, 1, 1, 1, 1}),
-                           MakePoints(points));
+  const BsplineCurve curve(BasisOf(3, false, {0, 0, 0, 0, 0.3, 0.5, 0.5, 1, 1, 1, 1}),
+                           PointsOf(points));
   ExpectMatches(curve, {{0.0,
                          {{0.0, 1.0},
                           {7.0, -14.0},
@@ -93,8 +78,9 @@ TEST(BsplineCurve, CubicWithADoubleKnotMatchesScipy) {
 
 TEST(BsplineCurve, FloatingQuinticMatchesScipy) {
   const BsplineCurve curve(
-      Make(5, false, {-2.1, -1.6, -1.3, -0.4, -0.2, 0.0, 0.35, 0.6, 1.0, 1.7, 1.9, 2.2, 3.1, 3.3}),
-      MakePoints(kEightPoints));
+      BasisOf(5, false,
+              {-2.1, -1.6, -1.3, -0.4, -0.2, 0.0, 0.35, 0.6, 1.0, 1.7, 1.9, 2.2, 3.1, 3.3}),
+      PointsOf(kEightPoints));
   ExpectMatches(curve, {{0.0,
                          {{0.813606981712245, 1.4825317783403908},
                           {-1.0969096205938307, 2.41495955754329},
@@ -124,7 +110,7 @@ TEST(BsplineCurve, PeriodicQuarticOfThreePointsMatchesScipy) {
   std::vector<double> knots;
   for (int k = -4; k < 8; ++k) knots.push_back(turn[(k + 6) % 3] + (k + 6) / 3 - 2);
   const std::vector<std::vector<double>> points(kEightPoints.begin(), kEightPoints.begin() + 3);
-  const BsplineCurve curve(Make(4, true, knots), MakePoints(points));
+  const BsplineCurve curve(BasisOf(4, true, knots), PointsOf(points));
   ExpectMatches(curve, {{0.0,
                          {{0.8575367735712563, 1.033871473354232},
                           {0.49819146370870526, 4.219435736677116},

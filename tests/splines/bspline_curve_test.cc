@@ -14,24 +14,9 @@
 namespace batten {
 namespace {
 
-BsplineBasis Make(int degree, bool periodic, const std::vector<double>& knots) {
-  std::string error;
-  const auto basis = BsplineBasis::Make(degree, periodic, knots, &error);
-  EXPECT_TRUE(basis.has_value()) << error;
-  return basis.value();
-}
-
-Points MakePoints(const std::vector<std::vector<double>>& rows) {
-  Points points(rows.size(), rows[0].size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t c = 0; c < rows[i].size(); ++c) points(i, c) = rows[i][c];
-  }
-  return points;
-}
-
 TEST(BsplineCurve, EndInterpolatingCurvesBeginAndEndInTheirEndPoints) {
-  const BsplineCurve curve(Make(3, false, {0, 0, 0, 0, 1, 2, 2, 2, 2}),
-                           MakePoints({{1, 2}, {3, -1}, {0, 0}, {5, 5}, {7, 4}}));
+  const BsplineCurve curve(BasisOf(3, false, {0, 0, 0, 0, 1, 2, 2, 2, 2}),
+                           PointsOf({{1, 2}, {3, -1}, {0, 0}, {5, 5}, {7, 4}}));
   double end[2];
   curve.Evaluate(0.0, 0, end);
   EXPECT_EQ(end[0], 1.0);
@@ -45,7 +30,7 @@ TEST(BsplineCurve, EndInterpolatingCurvesBeginAndEndInTheirEndPoints) {
 }
 
 TEST(BsplineCurve, ParametersOutsideTheDomainAreClampedOnOpenCurves) {
-  const BsplineCurve curve(Make(2, false, {0, 0, 0, 1, 1, 1}), MakePoints({{1}, {3}, {-2}}));
+  const BsplineCurve curve(BasisOf(2, false, {0, 0, 0, 1, 1, 1}), PointsOf({{1}, {3}, {-2}}));
   double value = 0.0;
   curve.Evaluate(-5.0, 0, &value);
   EXPECT_EQ(value, 1.0);
@@ -55,8 +40,8 @@ TEST(BsplineCurve, ParametersOutsideTheDomainAreClampedOnOpenCurves) {
 
 TEST(BsplineCurve, NanParameterGivesNan) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const BsplineCurve open(Make(1, false, {0, 0, 1, 1}), MakePoints({{1}, {3}}));
-  const BsplineCurve closed(Make(1, true, {-1, 0, 1, 2}), MakePoints({{1}}));
+  const BsplineCurve open(BasisOf(1, false, {0, 0, 1, 1}), PointsOf({{1}, {3}}));
+  const BsplineCurve closed(BasisOf(1, true, {-1, 0, 1, 2}), PointsOf({{1}}));
   for (const BsplineCurve* curve : {&open, &closed}) {
     double value = 0.0;
     curve->Evaluate(nan, 0, &value);
@@ -65,7 +50,7 @@ TEST(BsplineCurve, NanParameterGivesNan) {
 }
 
 TEST(BsplineCurve, RefusesControlPointsOfAnotherSize) {
-  const BsplineBasis basis = Make(1, false, {0, 0, 1, 1});
+  const BsplineBasis basis = BasisOf(1, false, {0, 0, 1, 1});
   EXPECT_THROW(BsplineCurve(basis, Points::Zero(3, 2)), std::logic_error);
   EXPECT_THROW(BsplineCurve(basis, Points::Zero(2, 5)), std::logic_error);
   EXPECT_THROW(BsplineCurve(basis, Points::Zero(2, 0)), std::logic_error);
@@ -176,7 +161,7 @@ TEST_P(EveryCurve, PeriodicOnesAreOpenOnesWithTheirPointsRepeated) {
     const int n = basis.num_control_points();
     Points repeated(n + p_, curve.dimension());
     for (int j = 0; j < n + p_; ++j) repeated.row(j) = curve.control_points().row(j % n);
-    const BsplineCurve open(Make(p_, false, basis.knots()), repeated);
+    const BsplineCurve open(BasisOf(p_, false, basis.knots()), repeated);
     for (int trial = 0; trial < 10; ++trial) {
       const double t = RandomParameter(basis, &random_);
       for (int k = 0; k <= p_; ++k) {

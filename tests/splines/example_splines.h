@@ -32,6 +32,22 @@ inline Points RandomPoints(int rows, int dimension, std::mt19937* random) {
   return points;
 }
 
+inline Points PointsOf(const std::vector<std::vector<double>>& rows) {
+  Points points(rows.size(), rows.empty() ? 0 : rows[0].size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t c = 0; c < rows[i].size(); ++c) points(i, c) = rows[i][c];
+  }
+  return points;
+}
+
+/// The basis on knots that are known to be good.
+inline BsplineBasis BasisOf(int degree, bool periodic, const std::vector<double>& knots) {
+  std::string error;
+  std::optional<BsplineBasis> basis = BsplineBasis::Make(degree, periodic, knots, &error);
+  EXPECT_TRUE(basis.has_value()) << error;
+  return basis.value();
+}
+
 /// One kind of spline for the tests that run on all of them.
 struct SplineKind {
   int degree;
@@ -92,10 +108,7 @@ inline BsplineBasis MakeBasis(const SplineKind& kind, int n, std::mt19937* rando
     knots.push_back(-1.3);
     for (const double step : steps) knots.push_back(knots.back() + step);
   }
-  std::string error;
-  std::optional<BsplineBasis> basis = BsplineBasis::Make(p, kind.periodic(), knots, &error);
-  EXPECT_TRUE(basis.has_value()) << kind.Name() << ", n = " << n << ": " << error;
-  return basis.value();
+  return BasisOf(p, kind.periodic(), knots);
 }
 
 inline std::vector<BsplineBasis> MakeBases(const SplineKind& kind, std::mt19937* random) {

@@ -1,0 +1,288 @@
+#include "experiments/comparison_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "cost_functions/options.h"
+
+namespace batten {
+namespace {
+
+struct Column {
+  const char* top;  // two lines of the text table's header
+  const char* bottom;
+  const char* whole;
+  const char* latex;
+};
+
+constexpr std::array<Column, 16> kColumns = {{
+    {"", "problem", "problem", "problem"},
+    {"", "solver", "solver", "solver"},
+    {"claimed", "status", "status", "status"},
+    {"veri-", "fied", "verified", "verified"},
+    {"iter-", "ations", "iterations", "iterations"},
+    {"E", "calls", "E calls", "$E$ calls"},
+    {"g", "calls", "g calls", "$g$ calls"},
+    {"J", "calls", "J calls", "$J$ calls"},
+    {"prod-", "ucts", "products", "products"},
+    {"set-up", "ms", "set-up ms", "set-up ms"},
+    {"solve", "ms", "solve ms", "solve ms"},
+    {"times", "cholesky", "times banded_cholesky", "$\\times$ Cholesky"},
+    {"", "E", "E", "$E$"},
+    {"", "|g|", "\\|g\\|", "$|g|$"},
+    {"", "gap", "gap", "gap"},
+    {"distance", "to direct", "distance to direct", "distance"},
+}};
+constexpr std::size_t kNumNames = 2;  // problem, solver
+constexpr std::size_t kFirstNumber = 4;
+constexpr std::size_t kWidest = 160;  // of the text table
+
+using Cells = std::vector<std::string>;
+
+/// All columns of a row; of a skipped one the names and the reason.
+Cells RowCells(const ComparisonRow& row) {
+  const RunResult& run = row.run;
+  if (!run.skipped.empty()) return {row.problem, row.solver, "skipped: " + run.skipped};
+  const char* verified = !row.report.audited ? "-" : row.report.verdict.holds ? "yes" : "NO";
+  return {row.problem,
+          row.solver,
+          ToString(run.outcome.reason),
+          verified,
+          std::to_string(run.iterations),
+          std::to_string(run.counts.energy_calls),
+          std::to_string(run.counts.gradient_calls),
+          std::to_string(run.counts.jacobian_calls),
+          std::to_string(run.counts.products),
+          ShortNumber(1e3 * row.setup_seconds, 3),
+          ShortNumber(1e3 * row.solve_seconds, 3),
+          ShortNumber(row.times_cholesky, 3),
+          ShortNumber(run.energy, 7),
+          ShortNumber(run.gradient_norm, 2),
+          ShortNumber(row.gap, 2),
+          ShortNumber(row.distance_to_direct, 2)};
+}
+
+std::vector<Cells> AllCells(const ComparisonResult& result) {
+  std::vector<Cells> rows;
+  for (const ComparisonRow& row : result.rows) rows.push_back(RowCells(row));
+  return rows;
+}
+
+bool IsFirstOfProblem(const ComparisonResult& result, std::size_t row) {
+  return row > 0 && result.rows[row].problem_index != result.rows[row - 1].problem_index;
+}
+
+std::string Shortened(const std::string& text, std::size_t width) {
+  if (text.size() <= width) return text;
+  return text.substr(0, width - 2) + "..";
+}
+
+std::size_t Total(const std::vector<std::size_t>& widths, std::size_t separator) {
+  std::size_t total = separator * (widths.size() - 1);
+  for (const std::size_t width : widths) total += width;
+  return total;
+}
+
+/// As wide as the cells, names shortened where the table would be too wide.
+std::vector<std::size_t> TextWidths(const std::vector<Cells>& rows, std::size_t* separator) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    std::size_t width =
+        std::max(std::string(kColumns[c].top).size(), std::string(kColumns[c].bottom).size());
+    for (const Cells& row : rows) {
+      if (row.size() == kColumns.size() || c < kNumNames) width = std::max(width, row[c].size());
+    }
+    widths.push_back(width);
+  }
+  *separator = Total(widths, 2) <= kWidest ? 2 : 1;
+  constexpr std::size_t kShortest = 8;
+  while (Total(widths, *separator) > kWidest) {
+    std::size_t& longer = widths[0] > widths[1] ? widths[0] : widths[1];
+    if (longer <= kShortest) break;
+    --longer;
+  }
+  return widths;
+}
+
+std::string TextLine(const Cells& cells, const std::vector<std::size_t>& widths,
+                     std::size_t separator) {
+  std::string line;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (c > 0) line.append(separator, ' ');
+    if (c >= kNumNames && cells.size() < kColumns.size()) {
+      return Shortened(line + cells[c], kWidest);
+    }
+    const std::string text = Shortened(cells[c], widths[c]);
+    const std::size_t fill = widths[c] - text.size();
+    line += c < kFirstNumber ? text + std::string(fill, ' ') : std::string(fill, ' ') + text;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+/// Broken at spaces, continued lines indented; a word longer than a line stays whole.
+std::string Wrapped(const std::string& text) {
+  std::string result;
+  std::string line;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (!line.empty() && line.size() + 1 + (end - begin) > kWidest) {
+      result += line + "\n";
+      line = "   ";
+    }
+    line += (line.empty() ? "" : " ") + text.substr(begin, end - begin);
+    begin = end + 1;
+  }
+  return result + line + "\n";
+}
+
+std::string Replaced(const std::string& text,
+                     const std::vector<std::pair<char, std::string>>& replacements) {
+  std::string result;
+  for (const char c : text) {
+    const auto found = std::find_if(replacements.begin(), replacements.end(),
+                                    [c](const auto& pair) { return pair.first == c; });
+    result += found == replacements.end() ? std::string(1, c) : found->second;
+  }
+  return result;
+}
+
+std::string MarkdownText(const std::string& text) {
+  return Replaced(text, {{'|', "\\|"},
+                         {'\\', "\\\\"},
+                         {'<', "&lt;"},
+                         {'*', "\\*"},
+                         {'`', "\\`"},
+                         {'\n', " "},
+                         {'\r', " "}});
+}
+
+std::string LatexText(const std::string& text) {
+  return Replaced(text, {{'\\', "\\textbackslash{}"},
+                         {'_', "\\_"},
+                         {'&', "\\&"},
+                         {'%', "\\%"},
+                         {'#', "\\#"},
+                         {'$', "\\$"},
+                         {'{', "\\{"},
+                         {'}', "\\}"},
+                         {'^', "\\textasciicircum{}"},
+                         {'~', "\\textasciitilde{}"},
+                         {'|', "\\textbar{}"},
+                         {'<', "\\textless{}"},
+                         {'>', "\\textgreater{}"},
+                         {'\n', " "},
+                         {'\r', " "}});
+}
+
+/// 1.2e-10 as a power of ten.
+std::string LatexNumber(const std::string& text) {
+  const std::size_t exponent = text.find('e');
+  double value = 0.0;
+  if (exponent == std::string::npos || !ParseNumber(text, &value)) return LatexText(text);
+  return "$" + text.substr(0, exponent) + "\\cdot10^{" +
+         std::to_string(std::stoi(text.substr(exponent + 1))) + "}$";
+}
+
+std::string LatexLine(const Cells& cells) {
+  std::string line;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (c > 0) line += " & ";
+    if (c >= kNumNames && cells.size() < kColumns.size()) {
+      line += "\\multicolumn{" + std::to_string(kColumns.size() - c) + "}{l}{" +
+              LatexText(cells[c]) + "}";
+    } else {
+      line += c < kFirstNumber ? LatexText(cells[c]) : LatexNumber(cells[c]);
+    }
+  }
+  return line + " \\\\\n";
+}
+
+}  // namespace
+
+std::string ShortNumber(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  if (value == 0.0) return "0";
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), "%.*e", digits - 1, value);
+  const int exponent = std::stoi(std::string(buffer).substr(std::string(buffer).find('e') + 1));
+  constexpr int kFewestZeros = -3;
+  constexpr int kMostDigits = 6;
+  if (exponent < kFewestZeros || exponent > kMostDigits) return buffer;
+  std::snprintf(buffer, sizeof(buffer), "%.*f", std::max(0, digits - 1 - exponent), value);
+  return buffer;
+}
+
+std::string ComparisonText(const ComparisonResult& result) {
+  const std::vector<Cells> rows = AllCells(result);
+  std::size_t separator = 2;
+  const std::vector<std::size_t> widths = TextWidths(rows, &separator);
+  Cells top;
+  Cells bottom;
+  for (const Column& column : kColumns) {
+    top.push_back(column.top);
+    bottom.push_back(column.bottom);
+  }
+  std::string text = TextLine(top, widths, separator) + "\n" + TextLine(bottom, widths, separator) +
+                     "\n" + std::string(Total(widths, separator), '-') + "\n";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (IsFirstOfProblem(result, r)) text += "\n";
+    text += TextLine(rows[r], widths, separator) + "\n";
+  }
+  text += "\n";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const bool cut = rows[r].size() < kColumns.size() &&
+                     Total({widths[0], widths[1], rows[r].back().size()}, separator) > kWidest;
+    if (cut) text += Wrapped(rows[r][0] + ", " + rows[r][1] + ": " + rows[r][2]);
+  }
+  for (const std::string& note : ComparisonNotes(result)) text += Wrapped(note);
+  return text;
+}
+
+std::string ComparisonMarkdown(const ComparisonResult& result) {
+  std::string text = "|";
+  std::string rule = "|";
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    text += std::string(" ") + kColumns[c].whole + " |";
+    rule += c < kFirstNumber ? " --- |" : " ---: |";
+  }
+  text += "\n" + rule + "\n";
+  for (Cells cells : AllCells(result)) {
+    cells.resize(kColumns.size());
+    text += "|";
+    for (const std::string& cell : cells) text += " " + MarkdownText(cell) + " |";
+    text += "\n";
+  }
+  text += "\n";
+  for (const std::string& note : ComparisonNotes(result)) text += "- " + MarkdownText(note) + "\n";
+  return text;
+}
+
+std::string ComparisonLatex(const ComparisonResult& result) {
+  std::string text =
+      "% Needs \\usepackage{booktabs}.\n"
+      "\\begin{table*}\n\\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n"
+      "\\begin{tabular}{" +
+      std::string(kFirstNumber, 'l') + std::string(kColumns.size() - kFirstNumber, 'r') +
+      "}\n\\toprule\n";
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    text += (c > 0 ? " & " : "") + std::string(kColumns[c].latex);
+  }
+  text += " \\\\\n\\midrule\n";
+  const std::vector<Cells> rows = AllCells(result);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (IsFirstOfProblem(result, r)) text += "\\midrule\n";
+    text += LatexLine(rows[r]);
+  }
+  text += "\\bottomrule\n\\end{tabular}\n\n\\smallskip\n";
+  for (const std::string& note : ComparisonNotes(result)) {
+    text += "\\parbox{\\linewidth}{\\raggedright " + LatexText(note) + "}\n\n";
+  }
+  return text + "\\end{table*}\n";
+}
+
+}  // namespace batten

@@ -1,0 +1,183 @@
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cmath>
+#include <list>
+
+#include "experiments/atomic_file.h"
+#include "experiments/figures.h"
+#include "experiments/fit_report.h"
+#include "experiments/run.h"
+#include "experiments/trace.h"
+#include "tools/command.h"
+#include "tools/fit_request.h"
+#include "tools/fit_summary.h"
+#include "tools/interrupts.h"
+#include "tools/output_files.h"
+#include "tools/progress.h"
+#include "tools/run_flags.h"
+
+DEFINE_string(solver, "lbfgs",
+              "The solver with its options, as in lbfgs/memory=5 (batten list solvers).");
+DEFINE_string(trace, "", "CSV, one row per iteration.");
+DEFINE_string(iterates, "", "JSON lines, the control points at each iteration.");
+DEFINE_string(figure, "",
+              "SVG of data, control polygon and curve, drawn by gnuplot; its script (.gp) and data "
+              "(.dat) stay beside it.");
+
+namespace batten {
+namespace {
+
+/// How far a run is, by whichever limit or goal is nearest.
+double Fraction(const RunSpec& spec, const TraceRow& row, double start_gradient_norm) {
+  double fraction = row.seconds / spec.max_seconds;
+  if (spec.max_iterations > 0) {
+    fraction = std::max(fraction, row.iteration / static_cast<double>(spec.max_iterations));
+  }
+  if (spec.mode == Mode::kRace && spec.gradient_tolerance > 0.0 && row.gradient_norm > 0.0) {
+    // One digit of the gradient takes about as long as another.
+    fraction = std::max(fraction, std::log(row.gradient_norm / start_gradient_norm) /
+                                      std::log(spec.gradient_tolerance));
+  }
+  return fraction;
+}
+
+bool RunWithProgress(const Problem& problem, const NameSpec& solver, RunSpec spec,
+                     RunResult* result, std::string* error) {
+  const InterruptibleRun interruptible;
+  Progress progress(FLAGS_quiet);
+  double start_gradient_norm = 0.0;
+  spec.progress = [&](const TraceRow& row) {
+    if (row.iteration == 0) start_gradient_norm = row.gradient_norm;
+    if (!progress.IsDue()) return;
+    progress.Show(Fraction(spec, row, start_gradient_norm),
+                  "iteration " + std::to_string(row.iteration) + ", E " + NumberText(row.energy) +
+                      ", |g| " + NumberText(row.gradient_norm));
+  };
+  return Run(problem, solver, spec, result, error);
+}
+
+std::vector<OutputFile> Outputs() {
+  std::vector<OutputFile> outputs;
+  if (WasGiven("out")) outputs.push_back({"out", FLAGS_out});
+  if (WasGiven("trace")) outputs.push_back({"trace", FLAGS_trace});
+  if (WasGiven("iterates")) outputs.push_back({"iterates", FLAGS_iterates});
+  if (WasGiven("figure")) {
+    outputs.push_back({"figure", FLAGS_figure});
+    outputs.push_back({"figure", WithExtension(FLAGS_figure, ".gp")});
+    outputs.push_back({"figure", WithExtension(FLAGS_figure, ".dat")});
+  }
+  return outputs;
+}
+
+std::vector<std::string> TermNames(const Problem& problem) {
+  std::vector<std::string> names;
+  for (const Problem::TermInstance& term : problem.terms()) names.push_back(term.name);
+  return names;
+}
+
+/// All files are filled before the first takes its place: a full disk leaves none of them.
+bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spec,
+                const FitReport& report, std::vector<std::string>* written, std::string* error) {
+  std::list<AtomicFile> files;
+  const auto open = [&](const std::string& path) -> std::ostream* {
+    files.emplace_back();
+    written->push_back(path);
+    return files.back().Open(path, error) ? &files.back().stream() : nullptr;
+  };
+  if (WasGiven("out")) {
+    std::ostream* stream = open(FLAGS_out);
+    if (stream == nullptr) return false;
+    WriteFitJson(problem, run, spec, report, stream);
+  }
+  if (WasGiven("trace")) {
+    std::ostream* stream = open(FLAGS_trace);
+    if (stream == nullptr) return false;
+    *stream << TraceCsv(run.trace, TermNames(problem));
+  }
+  if (WasGiven("iterates")) {
+    std::ostream* stream = open(FLAGS_iterates);
+    if (stream == nullptr) return false;
+    *stream << IteratesJsonLines(problem, run);
+  }
+  for (AtomicFile& file : files) {
+    if (!file.stream().flush()) return file.Commit(error);  // says why
+  }
+  for (AtomicFile& file : files) {
+    if (!file.Commit(error)) return false;
+  }
+  return true;
+}
+
+int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec& spec,
+                CommandOutput* output) {
+  const std::unique_ptr<Problem> problem = LoadFit(request, &output->error);
+  if (problem == nullptr) return kBadInput;
+  RunResult run;
+  if (!RunWithProgress(*problem, solver, spec, &run, &output->error)) return kBadInput;
+  if (InterruptRequested()) {
+    output->error = "interrupted; nothing was written";
+    return kInterruptedStatus;
+  }
+  if (!run.skipped.empty()) return Refuse("--solver: " + run.skipped, output);
+
+  const FitReport report = MeasureFit(*problem, run, spec);
+  std::vector<std::string> written;
+  if (!WriteFiles(*problem, run, spec, report, &written, &output->error)) return kBadInput;
+  output->results = FitSummary(request.label, *problem, run, report, written);
+  if (report.audited && !report.verdict.holds) {
+    output->error = "audit: " + solver.ToString() + " " + report.verdict.failure;
+    return kDisagreement;
+  }
+  if (ReachedTarget(run, spec, report)) return kDone;
+  output->error = NotReachedMessage(run, spec);
+  return kNotReached;
+}
+
+int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
+  std::vector<NameSpec> solvers;
+  std::string* const error = &output->error;
+  if (!SolversFromFlag("solver", FLAGS_solver, &solvers, error)) return kBadInput;
+  if (solvers.size() != 1) {
+    return Refuse(RefusedFlag("solver", FLAGS_solver, "one solver"), output);
+  }
+  FitRequest request;
+  if (!MakeFitRequest(positional, &request, error)) return kBadInput;
+  if (!CheckOutputs(Outputs(), request.input_files, error)) return kBadInput;
+  RunSpec spec = RunSpecFromFlags();
+  spec.keep_iterates = WasGiven("iterates");
+  return FitAndWrite(request, solvers.front(), spec, output);
+}
+
+}  // namespace
+
+Command FitCommand() {
+  Command command;
+  command.name = "fit";
+  command.arguments = "FILE | --problem=NAME";
+  command.summary = "fits one spline to the points of FILE (- is standard input)";
+  command.details = {
+      "FILE is CSV with a header (x,y or x,y,z, ...; also t for given parameters and weight) or "
+      "rows "
+      "of numbers. Lengths are in the unit of the data, E in its square; seconds are seconds.",
+      "Exit status 1: the solver failed or did not reach what was asked. line_search_ended and "
+      "native_stop count as reached where the audit finds |g| at most 1.5e-8 |g(start)|, below "
+      "which "
+      "E no longer falls visibly. Status 3: the claim failed its audit."};
+  command.examples = {
+      "batten fit data/animals/rhino_100.csv --closed --control_points=80 --out=fit.json",
+      "batten fit --problem=rhino --solver=lspia/step=optimal --trace=trace.csv "
+      "--figure=rhino.svg"};
+  command.flags = FitRequestFlags();
+  command.flags.push_back(TextFlag("solver", "SOLVER"));
+  for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
+  command.flags.push_back(TextFlag("out", "FILE", "The fit as JSON (docs/formats.md)."));
+  for (const char* name : {"trace", "iterates", "figure"}) {
+    command.flags.push_back(TextFlag(name, "FILE"));
+  }
+  command.flags.push_back(SwitchFlag("quiet"));
+  command.run = &RunFit;
+  return command;
+}
+
+}  // namespace batten

@@ -1,0 +1,218 @@
+#include "tools/fit_request.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "problems/catalogue.h"
+#include "tools/run_flags.h"
+
+namespace {
+const batten::FitSpec kDefaults;
+}  // namespace
+
+DEFINE_string(problem, "",
+              "Fit a problem of the catalogue (batten list problems) or of a problem file instead "
+              "of FILE; flags below override what it says.");
+DEFINE_bool(closed, kDefaults.closed,
+            "The curve is closed: the last point is followed by the first.");
+DEFINE_int32(degree, kDefaults.degree, "Degree of the spline.");
+DEFINE_int32(control_points, kDefaults.control_points,
+             "Number of control points; an open curve needs degree + 1 or more. Required unless "
+             "--knots are numbers or --problem says it.");
+DEFINE_string(parameters, batten::ToString(*kDefaults.parameters),
+              "Parameters of the points; given: the column t of FILE.");
+DEFINE_string(knots, batten::ToString(kDefaults.knots),
+              "uniform, averaged (from the parameters), or the knots themselves: numbers separated "
+              "by commas, or a file of numbers. Open: n + p + 1 of them, closed: n + 2p + 1.");
+DEFINE_string(ends, "end_interpolating",
+              "Open curves: p + 1 equal knots at either end, or knots that go on past the domain.");
+DEFINE_string(
+    domain, "",
+    "With --parameters=given: where the curve begins and ends, as two numbers. Not given: "
+    "the range of the parameters; closed: 0,1.");
+DEFINE_string(terms, "interpolation",
+              "Terms of the energy with their options, separated by commas (batten list terms).");
+DEFINE_string(start, kDefaults.start,
+              "Where the control points start: on the polyline through the data, or all at its "
+              "centroid.");
+
+namespace batten {
+namespace {
+
+bool ReadNumbers(const std::string& text, std::vector<double>* numbers) {
+  numbers->clear();
+  for (const std::string& part : SplitAtCommas(text)) {
+    double number = 0.0;
+    if (!ParseNumber(part, &number)) return false;
+    numbers->push_back(number);
+  }
+  return true;
+}
+
+bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::string* error) {
+  std::ifstream file(path);
+  if (!file.is_open()) {
+    *error = RefusedFlag("knots", path,
+                         "uniform, averaged, numbers separated by commas, a file (" +
+                             std::string(std::strerror(errno)) + ")");
+    return false;
+  }
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
+    std::istringstream words(line);
+    for (std::string word; words >> word && word.front() != '#';) {
+      knots->emplace_back();
+      if (ParseNumber(word, &knots->back())) continue;
+      *error = path + ":" + std::to_string(number) + ": found \"" + word.substr(0, 40) +
+               "\"; allowed: numbers, separated by white space or commas";
+      return false;
+    }
+  }
+  if (!file.bad() && !knots->empty()) return true;
+  *error = path + ": found no knots; allowed: numbers, separated by white space or commas";
+  return false;
+}
+
+bool ApplyKnots(FitRequest* request, std::string* error) {
+  FitSpec* spec = &request->spec;
+  if (WasGiven("knots")) {
+    spec->given_knots.clear();
+    if (!FromString(FLAGS_knots, &spec->knots)) {
+      if (!ReadNumbers(FLAGS_knots, &spec->given_knots)) {
+        spec->given_knots.clear();
+        request->input_files.push_back(FLAGS_knots);
+        if (!ReadKnotFile(FLAGS_knots, &spec->given_knots, error)) return false;
+      }
+      if (!WasGiven("control_points")) spec->control_points = 0;
+    }
+  }
+  if (!WasGiven("ends")) return true;
+  if (spec->closed || !spec->given_knots.empty()) {
+    *error = RefusedFlag("ends", FLAGS_ends,
+                         std::string("nothing, where ") +
+                             (spec->closed ? "the curve is closed" : "the knots are given"));
+    return false;
+  }
+  spec->ends = FLAGS_ends == "floating" ? EndKnots::kFloating : EndKnots::kEndInterpolating;
+  return true;
+}
+
+bool ApplyDomain(FitSpec* spec, std::string* error) {
+  if (!WasGiven("domain")) {
+    // A catalogue problem's domain belongs to its own parameters.
+    if (spec->parameters.has_value()) spec->domain.reset();
+    return true;
+  }
+  std::vector<double> ends;
+  if (!ReadNumbers(FLAGS_domain, &ends) || ends.size() != 2 || !(ends[0] < ends[1])) {
+    *error = RefusedFlag("domain", FLAGS_domain, "two numbers A,B with A < B");
+    return false;
+  }
+  if (spec->parameters.has_value() || !spec->given_knots.empty()) {
+    *error = RefusedFlag("domain", FLAGS_domain,
+                         "nothing, unless the parameters, but not the "
+                         "knots, are given");
+    return false;
+  }
+  spec->domain = {ends[0], ends[1]};
+  return true;
+}
+
+bool ApplyTerms(FitSpec* spec, std::string* error) {
+  if (!WasGiven("terms")) return true;
+  bool is_good = ParseNameSpecList(FLAGS_terms, &spec->terms, error);
+  for (const NameSpec& name : spec->terms) {
+    const Term* term = nullptr;
+    OptionValues options;
+    is_good = is_good && TermRegistry::Global().Resolve(name, &term, &options, error);
+  }
+  if (!is_good) *error = "--terms: " + *error;
+  return is_good;
+}
+
+bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
+               std::string* error) {
+  const bool has_problem = WasGiven("problem");
+  if (positional.size() + (has_problem ? 1 : 0) != 1) {
+    *error = "fit: found " + std::to_string(positional.size()) + " files" +
+             (has_problem ? " and --problem" : "") + "; allowed: one FILE or --problem";
+    return false;
+  }
+  if (!has_problem) {
+    request->data_path = positional.front();
+    request->label = request->data_path == "-" ? "stdin" : request->data_path;
+    request->input_files = {request->data_path};
+    return true;
+  }
+  CatalogueEntry entry;
+  if (!FindProblem(FLAGS_problem, &entry, error)) {
+    *error = "--problem: " + *error;
+    return false;
+  }
+  *request = {entry.spec, entry.data_path, entry.name, {entry.data_path, entry.path}};
+  return true;
+}
+
+}  // namespace
+
+std::vector<FlagInfo> FitRequestFlags() {
+  constexpr double kLowestDegree = 1.0;
+  return {TextFlag("problem", "NAME"),
+          SwitchFlag("closed"),
+          NumberFlag("degree", "P", kLowestDegree, kMaxDegree),
+          NumberFlag("control_points", "N", 1.0, kMaxControlPoints),
+          WordFlag("parameters", {"uniform", "chord_length", "centripetal", "given"}),
+          TextFlag("knots", "KNOTS"),
+          WordFlag("ends", {"end_interpolating", "floating"}),
+          TextFlag("domain", "A,B"),
+          TextFlag("terms", "TERMS"),
+          WordFlag("start", {"data", "centroid"})};
+}
+
+bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* request,
+                    std::string* error) {
+  if (!FindInput(positional, request, error)) return false;
+  FitSpec* spec = &request->spec;
+  if (WasGiven("closed")) spec->closed = FLAGS_closed;
+  if (WasGiven("degree")) spec->degree = FLAGS_degree;
+  if (WasGiven("control_points")) spec->control_points = FLAGS_control_points;
+  if (WasGiven("start")) spec->start = FLAGS_start;
+  if (WasGiven("parameters")) {
+    Parameterization rule = Parameterization::kUniform;
+    spec->parameters.reset();
+    if (FromString(FLAGS_parameters, &rule)) spec->parameters = rule;
+  }
+  if (!ApplyKnots(request, error) || !ApplyDomain(spec, error) || !ApplyTerms(spec, error)) {
+    return false;
+  }
+  if (spec->given_knots.empty()) {
+    const int fewest = spec->closed ? 1 : spec->degree + 1;
+    if (spec->control_points < fewest) {
+      const std::string found =
+          spec->control_points == 0 ? "nothing" : std::to_string(spec->control_points);
+      *error = "--control_points: found " + found + "; allowed: " + std::to_string(fewest) +
+               " to " + std::to_string(kMaxControlPoints) +
+               (spec->closed ? "" : " (degree + 1 or more for an open curve)");
+      return false;
+    }
+  }
+  return true;
+}
+
+std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::string* error) {
+  std::optional<DataSet> data = ReadDataSet(request.data_path, error);
+  if (!data.has_value()) return nullptr;
+  std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), request.spec, error);
+  if (problem == nullptr) *error = request.label + ": " + *error;
+  return problem;
+}
+
+}  // namespace batten

@@ -1,0 +1,127 @@
+#include "tools/fit_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace batten {
+namespace {
+
+/// Six digits for the eye; files have them all.
+std::string Short(double value) {
+  if (!std::isfinite(value)) return "unknown";
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+std::string Line(const std::string& name, const std::string& text) {
+  std::string line = name;
+  line.resize(std::max<size_t>(line.size() + 1, 14), ' ');
+  return line + text + "\n";
+}
+
+std::string Plural(long count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string CurveLines(const std::string& label, const Problem& problem) {
+  const CurveFit* fit = problem.curve_fit();
+  if (fit == nullptr) return Line("fitted", label);
+  const BsplineBasis& basis = fit->basis();
+  std::string text = Line("fitted", label + ": " + Plural(fit->data().points.rows(), "point") +
+                                        " in " + std::to_string(fit->dimension()) + "-D, " +
+                                        (basis.periodic() ? "closed" : "open") +
+                                        " curve of degree " + std::to_string(basis.degree()) +
+                                        ", " + Plural(basis.num_control_points(), "control point"));
+  const FitSpec& spec = fit->spec();
+  text += Line("parameters", spec.parameters.has_value() ? ToString(*spec.parameters) : "given");
+  return text + Line("knots", spec.given_knots.empty() ? ToString(spec.knots) : "given");
+}
+
+std::string SolverLines(const RunResult& run) {
+  std::string options;
+  for (const auto& [name, value] : run.options) {
+    options += (options.empty() ? " (" : ", ") + name + "=" + value;
+  }
+  std::string text = Line("solver", run.solver.ToString() + options + (options.empty() ? "" : ")"));
+  text += Line("stopped", std::string(ToString(run.outcome.reason)) + " after " +
+                              Plural(run.iterations, "iteration") +
+                              (run.outcome.message.empty() ? "" : ": " + run.outcome.message));
+  for (const auto& [name, value] : run.notes) text += Line("note", name + ": " + value);
+  if (std::isfinite(run.observed_rate)) {
+    text +=
+        Line("rate", "|g| falls by " + Short(run.observed_rate) + " per iteration near the end");
+  }
+  return text;
+}
+
+std::string EnergyLines(const Problem& problem, const RunResult& run) {
+  std::string text =
+      Line("energy E", Short(run.energy) + " (start " + Short(run.start_energy) + ")");
+  const auto& terms = problem.terms();
+  for (std::size_t k = 0; terms.size() > 1 && k < terms.size(); ++k) {
+    double energy = 0.0;
+    const BlockFamily& family = *terms[k].family;
+    if (family.Evaluate(run.x, 0, family.size(), &energy, nullptr) != Status::kOk) energy = NAN;
+    text += Line("", terms[k].name + " " + Short(energy * problem.units().energy));
+  }
+  return text + Line("gradient |g|", Short(run.gradient_norm) + " (start " +
+                                         Short(run.start_gradient_norm) + ", rounding floor " +
+                                         Short(run.gradient_floor) + ")");
+}
+
+std::string AuditText(const FitReport& report) {
+  if (!report.audited) return "none: it covers interpolation without loss and constraints only";
+  if (!report.verdict.holds) return "FAILED: " + report.verdict.failure;
+  return "verified: E " + Short(report.audit.energy) + ", |g| " + Short(report.audit.gradient_norm);
+}
+
+}  // namespace
+
+std::string FitSummary(const std::string& label, const Problem& problem, const RunResult& run,
+                       const FitReport& report, const std::vector<std::string>& files) {
+  const Counts& counts = run.counts;
+  std::string text = CurveLines(label, problem) + SolverLines(run) + EnergyLines(problem, run);
+  text += Line("distance", "rms " + Short(report.rms) + ", largest " + Short(report.max) +
+                               " (at the parameters)");
+  text += Line("", "rms " + Short(report.rms_orthogonal) + ", largest " +
+                       Short(report.max_orthogonal) + " (orthogonal)");
+  text += Line("calls", "E " + std::to_string(counts.energy_calls) + ", g " +
+                            std::to_string(counts.gradient_calls) + ", Jacobian " +
+                            std::to_string(counts.jacobian_calls) + ", products " +
+                            std::to_string(counts.products));
+  text += Line("time", Short(run.seconds) + " s, of which set-up " + Short(run.setup_seconds) +
+                           " s; processor " + Short(run.cpu_seconds) + " s");
+  text += Line("audit", AuditText(report));
+  for (const std::string& file : files) text += Line("written", file);
+  return text;
+}
+
+bool ReachedTarget(const RunResult& run, const RunSpec& spec, const FitReport& report) {
+  const StopReason reason = run.outcome.reason;
+  if (IsSuccess(reason)) return true;
+  if (reason == StopReason::kNativeStop && spec.mode == Mode::kNative) return true;
+  if (reason != StopReason::kLineSearchEnded && reason != StopReason::kNativeStop) return false;
+  const double asked = spec.mode == Mode::kRace ? spec.gradient_tolerance * run.start_gradient_norm
+                                                : spec.native_gradient;
+  const double seen = std::sqrt(std::numeric_limits<double>::epsilon()) * run.start_gradient_norm;
+  Claim claim = ClaimOf(run, spec);
+  claim.minimum = true;
+  claim.gradient_target = std::max(asked, seen);
+  if (report.audited) return Verify(claim, report.audit).holds;
+  return run.gradient_norm <= claim.gradient_target;
+}
+
+std::string NotReachedMessage(const RunResult& run, const RunSpec& spec) {
+  std::string text = run.solver.ToString() +
+                     " did not reach what was asked: " + ToString(run.outcome.reason) + " after " +
+                     Plural(run.iterations, "iteration") + " at |g| = " + Short(run.gradient_norm);
+  if (spec.mode == Mode::kRace) {
+    text += "; asked: |g| <= " + Short(spec.gradient_tolerance * run.start_gradient_norm);
+  }
+  return text;
+}
+
+}  // namespace batten
