@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,10 +16,6 @@ namespace {
 
 constexpr int kPoints = 1000000;
 constexpr int kControlPoints = 10000;
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// The solver alone, from the problem's start: rows are streamed, nothing is left from a call
 /// before.
@@ -53,11 +48,11 @@ void FromDataSet(benchmark::State& state, const std::string& solver_name, bool c
   for (auto _ : state) {
     problem.reset();
     DataSet copy = data;
-    const double start = Now();
+    const double start = CpuSeconds();
     problem = MakeLoopFit(std::move(copy), kControlPoints, closed);
     x = Solve(*problem, solver_name);
     const Points control_points = problem->curve_fit()->ControlPoints(x);
-    state.SetIterationTime(Now() - start);
+    state.SetIterationTime(CpuSeconds() - start);
     benchmark::DoNotOptimize(control_points.data());
   }
   ReportEnergy(state, *problem, x);
@@ -67,9 +62,9 @@ void FromProblem(benchmark::State& state, const std::string& solver_name, bool c
   const Problem& problem = LoopFit(kPoints, kControlPoints, closed);
   Eigen::VectorXd x;
   for (auto _ : state) {
-    const double start = Now();
+    const double start = CpuSeconds();
     x = Solve(problem, solver_name);
-    state.SetIterationTime(Now() - start);
+    state.SetIterationTime(CpuSeconds() - start);
     benchmark::DoNotOptimize(x.data());
   }
   ReportEnergy(state, problem, x);
@@ -96,12 +91,12 @@ void LargeFit(benchmark::State& state, const std::string& solver_name) {
   constexpr int kManyControlPoints = 100000;
   for (auto _ : state) {
     DataSet data = MakeNoisyLoop(kManyPoints);
-    const double start = Now();
+    const double start = CpuSeconds();
     const std::unique_ptr<Problem> problem =
         MakeLoopFit(std::move(data), kManyControlPoints, /*closed=*/false);
     const Eigen::VectorXd x = Solve(*problem, solver_name);
     const Points control_points = problem->curve_fit()->ControlPoints(x);
-    state.SetIterationTime(Now() - start);
+    state.SetIterationTime(CpuSeconds() - start);
     benchmark::DoNotOptimize(control_points.data());
   }
   rusage usage{};

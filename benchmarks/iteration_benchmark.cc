@@ -4,7 +4,6 @@
 #include <lbfgs.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <string>
 
@@ -23,22 +22,18 @@ constexpr int kPoints = 1000000;
 constexpr int kWarmUp = 10;
 constexpr int kIterations = 20;
 
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 void ReportPerIteration(benchmark::State& state) {
-  state.counters["us_per_iteration"] =
-      benchmark::Counter(1e-6 * kIterations, benchmark::Counter::kIsIterationInvariantRate |
-                                                 benchmark::Counter::kInvert);
+  state.counters["per_iteration"] = benchmark::Counter(
+      kIterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// `calls`: evaluations of E and g in all timed iterations, of all of the benchmark's repetitions.
+/// `calls`: evaluations of E and g in all timed iterations of all the benchmark's loops.
 void ReportPerEvaluation(benchmark::State& state, long calls) {
-  state.counters["us_per_evaluation"] = benchmark::Counter(
-      1e-6 * static_cast<double>(calls), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.counters["evaluations_per_iteration"] = benchmark::Counter(
-      static_cast<double>(calls) / kIterations, benchmark::Counter::kAvgIterations);
+  const auto count = static_cast<double>(calls);
+  state.counters["per_evaluation"] =
+      benchmark::Counter(count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["evaluations_per_iteration"] =
+      benchmark::Counter(count / kIterations, benchmark::Counter::kAvgIterations);
 }
 
 /// Seconds that iterations kWarmUp + 1 .. kWarmUp + kIterations take. `calls` is the running count
@@ -57,9 +52,9 @@ double TimeSteps(benchmark::State& state, const std::string& solver_name, Object
   bool ended = stepper->Start(objective, &context, &x).has_value();
   for (int k = 0; k < kWarmUp && !ended; ++k) ended = stepper->Step(&x).has_value();
   const long calls_before = calls == nullptr ? 0 : *calls;
-  const double start = Now();
+  const double start = CpuSeconds();
   for (int k = 0; k < kIterations && !ended; ++k) ended = stepper->Step(&x).has_value();
-  const double seconds = Now() - start;
+  const double seconds = CpuSeconds() - start;
   if (ended) state.SkipWithError("the run ended before its last timed iteration");
   if (timed != nullptr) *timed += *calls - calls_before;
   benchmark::DoNotOptimize(x.data());
@@ -154,10 +149,10 @@ int WatchPeer(void* instance, const lbfgsfloatval_t* /*x*/, const lbfgsfloatval_
   auto* const run = static_cast<PeerRun*>(instance);
   if (iteration == kWarmUp) {
     run->calls_before = run->calls;
-    run->started = Now();
+    run->started = CpuSeconds();
   }
   if (iteration == kWarmUp + kIterations) {
-    run->seconds = Now() - run->started;
+    run->seconds = CpuSeconds() - run->started;
     run->done = true;
   }
   return run->done ? 1 : 0;  // anything but 0 ends it

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <memory>
@@ -16,6 +17,14 @@
 #include "solvers/run_context.h"
 
 namespace batten {
+
+/// CPU time of this process. Everything measured runs in one thread: without neighbours it is the
+/// time on the wall, with some it does not count the time they were given.
+inline double CpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 /// Uniform on [-1, 1): SplitMix64 (Steele, Lea and Flood, OOPSLA 2014) at place `index`.
 inline double Noise(std::uint64_t index) {

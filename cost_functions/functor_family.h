@@ -34,7 +34,7 @@ class FunctorFamily final : public BlockFamily, private RowSource {
                 std::shared_ptr<const ceres::LossFunction> loss)
       : BlockFamily(weight, std::move(loss)), setting_(setting), functor_(std::move(functor)),
         sites_(functor_.MakeSites(setting)) {
-    if constexpr (Functor::kAffine) rows_are_alike_ = RowsAreAlike();
+    if constexpr (kMayHaveRows) rows_are_alike_ = RowsAreAlike();
   }
 
   int size() const override { return sites_->size; }
@@ -65,6 +65,9 @@ class FunctorFamily final : public BlockFamily, private RowSource {
   }
 
  private:
+  /// Rows are compiled one coordinate at a time: one residual each.
+  static constexpr bool kMayHaveRows = Functor::kAffine && Functor::NumResiduals(1) == 1;
+
   /// Calls body with the kernel of the sizes at hand: compiled for the common ones.
   template <typename Body>
   auto WithKernel(Body body) const {
@@ -151,7 +154,7 @@ class FunctorFamily final : public BlockFamily, private RowSource {
     return shape;
   }
   void Stream(RowConsumer* consumer) const override {
-    if constexpr (Functor::kAffine) {
+    if constexpr (kMayHaveRows) {
       WithKernel([&](const auto& kernel) {
         kernel.StreamRows(std::sqrt(weight()), consumer);
         return true;
@@ -172,8 +175,12 @@ class FunctorFamily final : public BlockFamily, private RowSource {
           setting_.control_point_offset + setting_.basis->num_control_points() * d);
       for (const int block : {0, size() - 1}) {
         const int span = SpanOf(block);
-        if (!kernel.ResidualsAndJacobian(kernel.MakeSite(block, span), kernel.MakeWindow(span),
-                                         x.data(), residuals.data(), jacobian.data())) {
+        const auto site = kernel.MakeSite(block, span);
+        const auto window = kernel.MakeWindow(span);
+        if (!kernel.ResidualsAndJacobian(site, window, x.data(), residuals.data(),
+                                         jacobian.data()) ||
+            !kernel.PlainResiduals(site, window, x.data(), residuals.data()) ||
+            !IsSeenAlikeAlone(site, residuals)) {
           return false;
         }
         for (int r = 0; r < d; ++r) {
@@ -185,6 +192,25 @@ class FunctorFamily final : public BlockFamily, private RowSource {
       }
       return true;
     });
+  }
+
+  /// Whether the functor finds the same residuals at control points of zero when it sees each
+  /// coordinate as a curve of its own, as it does while rows are compiled.
+  template <typename SiteType>
+  bool IsSeenAlikeAlone(SiteType site, const std::vector<double>& residuals) const {
+    Site<double, -1, -1, Functor::kDerivatives> alone(site.degree(), 1);
+    std::copy_n(site.mutable_basis(), (Functor::kDerivatives + 1) * (site.degree() + 1),
+                alone.mutable_basis());
+    alone.set_root_weight(site.root_weight());
+    const double zero = 0.0;
+    const std::vector<const double*> points(kMaxOrder, &zero);
+    for (int c = 0; c < site.dimension(); ++c) {
+      alone.mutable_point()[0] = site.point(c);
+      double residual = 0.0;
+      if (!functor_(alone, points.data(), &residual)) return false;
+      if (residual != residuals[static_cast<std::size_t>(c)]) return false;
+    }
+    return true;
   }
 
   FitSetting setting_;

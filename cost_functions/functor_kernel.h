@@ -90,7 +90,7 @@ class FunctorKernel {
 
   bool PlainResiduals(const NumberSite& site, const Window& window, const double* x,
                       double* residuals) const {
-    const double* points[kOrderStorage];
+    const double* points[kOrderStorage] = {};
     for (int j = 0; j < order(); ++j) points[j] = x + window.offset[j];
     return functor_(site, points, residuals);
   }
@@ -318,6 +318,7 @@ class FunctorKernel {
       root = root.Map([](double weight) { return std::sqrt(weight); });
     }
     site.set_root_weight(root);
+    site.set_variables(points);
     Form result;
     for (int c = 0; c < dimension(); ++c) {
       Pack point(0.0);

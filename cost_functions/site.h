@@ -35,24 +35,41 @@ class Site {
     for (int j = 1; j <= degree(); ++j) sum += values[j] * control_points[j][coordinate];
     return sum;
   }
-  /// The same when rows are compiled: control point j is the variable j itself then, and products
-  /// with the zeros and ones of its form would be most of the work.
+  /// The same when rows are compiled: the span's own control points are the variables x_j then, and
+  /// products with the zeros and ones of their forms would be most of the work.
   template <int kVariables>
   AffineForm<Real, kVariables> Derivative(
-      int k, const AffineForm<Real, kVariables>* const* /*control_points*/, int /*coordinate*/) const {
-    return AffineForm<Real, kVariables>::Combination(basis_ + k * (degree() + 1), degree() + 1);
+      int k, const AffineForm<Real, kVariables>* const* control_points, int coordinate) const {
+    const Real* values = basis_ + k * (degree() + 1);
+    if (control_points == variables_) {
+      return AffineForm<Real, kVariables>::Combination(values, degree() + 1);
+    }
+    return CombinationOf(values, control_points, coordinate);
   }
 
   Real* mutable_basis() { return basis_; }
   Real* mutable_point() { return point_; }
+  /// The pointers handed to the functor while rows are compiled, where x_j is control point j.
+  void set_variables(const void* variables) { variables_ = variables; }
   void set_root_weight(const Real& root) { root_weight_ = root; }
 
  private:
+  /// Kept out of line: the loop over sites is to stay small.
+  template <int kVariables>
+  __attribute__((noinline)) AffineForm<Real, kVariables> CombinationOf(
+      const Real* values, const AffineForm<Real, kVariables>* const* control_points,
+      int coordinate) const {
+    AffineForm<Real, kVariables> sum = values[0] * control_points[0][coordinate];
+    for (int j = 1; j <= degree(); ++j) sum += values[j] * control_points[j][coordinate];
+    return sum;
+  }
+
   int degree_;
   int dimension_;
   Real basis_[(kDerivatives + 1) * kOrderStorage];
   Real point_[kDimensionStorage];
   Real root_weight_;
+  const void* variables_ = nullptr;
 };
 
 }  // namespace batten

@@ -3,6 +3,7 @@
 
 #include "cost_functions/options.h"
 #include "experiments/comparison_tables.h"
+#include "experiments/short_number.h"
 #include "problems/fit_problem.h"
 
 namespace batten {

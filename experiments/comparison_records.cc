@@ -145,7 +145,8 @@ std::string CsvField(const Json& value) {
 std::string ComparisonCsv(const ComparisonResult& result) {
   std::string header;
   std::string lines;
-  for (const auto& [key, value] : RowJson(result, ComparisonRow()).items()) {
+  const Json names = RowJson(result, ComparisonRow());
+  for (const auto& [key, value] : names.items()) {
     header += (header.empty() ? "" : ",") + key;
   }
   for (const ComparisonRow& row : result.rows) {

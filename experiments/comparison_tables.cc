@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 
 #include "cost_functions/options.h"
+#include "experiments/short_number.h"
 
 namespace batten {
 namespace {
@@ -41,6 +40,18 @@ constexpr std::size_t kWidest = 160;  // of the text table
 
 using Cells = std::vector<std::string>;
 
+/// Below a microsecond the clock tells nothing.
+std::string Milliseconds(double seconds) {
+  return seconds < 1e-6 ? "<0.001" : ShortNumber(1e3 * seconds, 3);
+}
+
+/// Seven digits of an energy, by which solvers are told apart; of one that is rounding noise of the
+/// start's, three.
+std::string EnergyText(const RunResult& run) {
+  constexpr double kNoise = 1e-12;
+  return ShortNumber(run.energy, run.energy < kNoise * run.start_energy ? 3 : 7);
+}
+
 /// All columns of a row; of a skipped one the names and the reason.
 Cells RowCells(const ComparisonRow& row) {
   const RunResult& run = row.run;
@@ -55,10 +66,10 @@ Cells RowCells(const ComparisonRow& row) {
           std::to_string(run.counts.gradient_calls),
           std::to_string(run.counts.jacobian_calls),
           std::to_string(run.counts.products),
-          ShortNumber(1e3 * row.setup_seconds, 3),
-          ShortNumber(1e3 * row.solve_seconds, 3),
+          Milliseconds(row.setup_seconds),
+          Milliseconds(row.solve_seconds),
           ShortNumber(row.times_cholesky, 3),
-          ShortNumber(run.energy, 7),
+          EnergyText(run),
           ShortNumber(run.gradient_norm, 2),
           ShortNumber(row.gap, 2),
           ShortNumber(row.distance_to_direct, 2)};
@@ -202,20 +213,6 @@ std::string LatexLine(const Cells& cells) {
 }
 
 }  // namespace
-
-std::string ShortNumber(double value, int digits) {
-  if (std::isnan(value)) return "-";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  if (value == 0.0) return "0";
-  char buffer[64];
-  std::snprintf(buffer, sizeof(buffer), "%.*e", digits - 1, value);
-  const int exponent = std::stoi(std::string(buffer).substr(std::string(buffer).find('e') + 1));
-  constexpr int kFewestZeros = -3;
-  constexpr int kMostDigits = 6;
-  if (exponent < kFewestZeros || exponent > kMostDigits) return buffer;
-  std::snprintf(buffer, sizeof(buffer), "%.*f", std::max(0, digits - 1 - exponent), value);
-  return buffer;
-}
 
 std::string ComparisonText(const ComparisonResult& result) {
   const std::vector<Cells> rows = AllCells(result);

@@ -33,9 +33,6 @@ std::string ComparisonJsonLines(const ComparisonResult& result);
 /// A claimed minimum or value of some row failed its audit.
 bool SomeClaimFailed(const ComparisonResult& result);
 
-/// `value` to `digits` significant digits, as short as can be: 0.0123, 1.2e-10, 45100; "-" for NaN.
-std::string ShortNumber(double value, int digits);
-
 }  // namespace batten
 
 #endif  // BATTEN_EXPERIMENTS_COMPARISON_TABLES_H_

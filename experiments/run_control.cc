@@ -78,9 +78,11 @@ bool RunControl::Allow(Evaluation kind, const Eigen::VectorXd* x) {
 }
 
 void RunControl::OffTheClock(const std::function<void()>& work) {
+  // Work inside work, as an evaluation there is, must not start the clocks again.
+  const bool was_running = watch_.running();
   watch_.Pause();
   work();
-  watch_.Resume();
+  if (was_running) watch_.Resume();
 }
 
 void RunControl::Note(const std::string& name, const std::string& value) {

@@ -14,6 +14,7 @@ class Stopwatch {
  public:
   void Resume();
   void Pause();
+  bool running() const { return running_; }
   double seconds() const { return seconds_; }          ///< Up to the last Pause.
   double cpu_seconds() const { return cpu_seconds_; }
   double SecondsNow() const;                           ///< Also while running.

@@ -19,9 +19,8 @@ class HalfEnergy final : public ceres::FirstOrderFunction {
   bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
     if (*stopped_) return false;
     x_ = Eigen::Map<const Eigen::VectorXd>(parameters, NumParameters());
-    const Status status = gradient == nullptr
-                              ? objective_->Energy(x_, cost)
-                              : objective_->EnergyAndGradient(x_, cost, &gradient_);
+    const Status status = gradient == nullptr ? objective_->Energy(x_, cost)
+                                              : objective_->EnergyAndGradient(x_, cost, &gradient_);
     *stopped_ = status == Status::kStop;
     if (status != Status::kOk) return false;
     *cost *= 0.5;
@@ -74,20 +73,13 @@ SolverInfo CeresLbfgsSolver::ClassInfo() {
                        "first inverse Hessian scaled by an approximate eigenvalue"),
       OptionInfo::Word("interpolation", "cubic", {"cubic", "quadratic", "bisection"},
                        "how the line search chooses its next step"),
-      OptionInfo::Real("decrease", 1e-4, 1e-12, 0.5, "first Wolfe condition; below curvature"),
-      OptionInfo::Real("curvature", 0.9, 1e-6, 1.0 - 1e-6, "second Wolfe condition"),
-      OptionInfo::Real("min_step", 1e-9, 1e-300, 1.0,
-                       "change of a variable below which a line search gives up"),
+      OptionInfo::Real("curvature", 0.9, 1e-3, 0.999,
+                       "line search ends where the slope has fallen to this part of the first one"),
   };
   return info;
 }
 
 std::string CeresLbfgsSolver::WhyUnsupported(const Objective& objective) const {
-  if (options_.Real("decrease") >= options_.Real("curvature")) {
-    return "ceres_lbfgs needs decrease below curvature; decrease is " +
-           NumberText(options_.Real("decrease")) + ", curvature " +
-           NumberText(options_.Real("curvature"));
-  }
   const std::string why = WhyNoBounds(objective, "ceres_lbfgs");
   if (!why.empty()) return why;
   const std::string& form = options_.Word("form");
@@ -97,7 +89,7 @@ std::string CeresLbfgsSolver::WhyUnsupported(const Objective& objective) const {
 
 template <typename Options>
 void CeresLbfgsSolver::SetOptions(Options* ceres_options) const {
-  // All of them, also where the defaults agree: the two structs are not bound to each other.
+  // All of them, though the defaults agree today: equal points need equal options.
   ceres_options->line_search_direction_type = ceres::LBFGS;
   ceres_options->line_search_type = ceres::WOLFE;
   ceres_options->max_lbfgs_rank = options_.Integer("memory");
@@ -106,11 +98,10 @@ void CeresLbfgsSolver::SetOptions(Options* ceres_options) const {
   ceres_options->line_search_interpolation_type = interpolation == "cubic"       ? ceres::CUBIC
                                                   : interpolation == "quadratic" ? ceres::QUADRATIC
                                                                                  : ceres::BISECTION;
-  ceres_options->min_line_search_step_size = options_.Real("min_step");
-  ceres_options->line_search_sufficient_function_decrease = options_.Real("decrease");
+  ceres_options->min_line_search_step_size = 1e-9;
+  ceres_options->line_search_sufficient_function_decrease = 1e-4;
   ceres_options->line_search_sufficient_curvature_decrease = options_.Real("curvature");
   ceres_options->max_line_search_step_contraction = 1e-3;
-  // Ceres warns when a bisection may not halve.
   ceres_options->min_line_search_step_contraction = 0.6;
   ceres_options->max_num_line_search_step_size_iterations = 20;
   ceres_options->max_num_line_search_direction_restarts = 5;

@@ -7,8 +7,8 @@
 
 namespace batten {
 
-/// Ceres' L-BFGS with its Wolfe line search, on E / 2. Its `form` says what Ceres gets: our objective
-/// as one function, Ceres' own problem of residual blocks, or one block per span.
+/// Ceres' L-BFGS with its Wolfe line search, on E / 2. Its `form` says what Ceres gets: our
+/// objective as one function, Ceres' own problem of residual blocks, or one block per span.
 /// docs/solvers/ceres_lbfgs.md.
 class CeresLbfgsSolver final : public Solver {
  public:
@@ -20,8 +20,7 @@ class CeresLbfgsSolver final : public Solver {
  private:
   Outcome DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) override;
   Outcome MinimizeObjective(Objective* objective, RunContext* context, Eigen::VectorXd* x) const;
-  Outcome MinimizeCeresProblem(Objective* objective, RunContext* context,
-                               Eigen::VectorXd* x) const;
+  Outcome MinimizeCeresProblem(Objective* objective, RunContext* context, Eigen::VectorXd* x) const;
   /// Sets what ceres::Solver and ceres::GradientProblemSolver have in common.
   template <typename Options>
   void SetOptions(Options* ceres_options) const;

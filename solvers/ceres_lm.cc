@@ -28,15 +28,17 @@ ceres::LinearSolverType LinearSolverType(const std::string& word) {
   return word == "cgnr" ? ceres::CGNR : ceres::SPARSE_NORMAL_CHOLESKY;
 }
 
-/// Where E is quadratic one undamped step solves it. A first radius of 1e12 damps that step by 1e-12 only, and still holds
-/// the directions that a rank-deficient problem leaves open near the start.
+/// Where E is quadratic one undamped step solves it. A first radius of 1e12 damps that step by
+/// 1e-12 only, and still holds the directions that a rank-deficient problem leaves open near the
+/// start.
 double FirstRadius(const OptionValues& options, const Problem& problem) {
   constexpr double kCeresDefault = 1e4;
   constexpr double kForQuadratics = 1e12;
-  if (options.Real("radius") > 0.0) return options.Real("radius");
-  const bool is_quadratic = std::all_of(
-      problem.terms().begin(), problem.terms().end(),
-      [](const Problem::TermInstance& term) { return term.family->rows() != nullptr; });
+  constexpr double kLeast = 1e-20;  // Ceres gives up at 1e-32
+  if (options.Real("radius") > 0.0) return std::max(options.Real("radius"), kLeast);
+  const bool is_quadratic =
+      std::all_of(problem.terms().begin(), problem.terms().end(),
+                  [](const Problem::TermInstance& term) { return term.family->rows() != nullptr; });
   return is_quadratic && !problem.has_bounds() ? kForQuadratics : kCeresDefault;
 }
 
@@ -52,14 +54,15 @@ SolverInfo CeresLmSolver::ClassInfo() {
   info.options = {
       OptionInfo::Word("strategy", "levenberg_marquardt", {"levenberg_marquardt", "dogleg"},
                        "how a step is held inside the trust region"),
-      OptionInfo::Word("linear_solver", "auto",
-                       {"auto", "sparse_normal_cholesky", "dense_normal_cholesky", "dense_qr",
-                        "cgnr"},
-                       "what solves for a step; auto: sparse_normal_cholesky if Ceres has it, else "
-                       "dense_qr"),
-      OptionInfo::Real("radius", 0.0, 0.0, 1e16,
-                       "first size of the trust region; 0: 1e12 where E is quadratic and nothing is "
-                       "bounded, else 1e4, the default of Ceres"),
+      OptionInfo::Word(
+          "linear_solver", "auto",
+          {"auto", "sparse_normal_cholesky", "dense_normal_cholesky", "dense_qr", "cgnr"},
+          "what solves for a step; auto: sparse_normal_cholesky if Ceres has it, else "
+          "dense_qr"),
+      OptionInfo::Real(
+          "radius", 0.0, 0.0, 1e16,
+          "first size of the trust region; 0: 1e12 where E is quadratic and nothing is "
+          "bounded, else 1e4, the default of Ceres"),
   };
   return info;
 }
@@ -82,9 +85,8 @@ Outcome CeresLmSolver::DoMinimize(Objective* objective, RunContext* context, Eig
   IterateBooker booker(context, &problem.state());
   ceres::Solver::Options ceres_options;
   ceres_options.minimizer_type = ceres::TRUST_REGION;
-  ceres_options.trust_region_strategy_type = options_.Word("strategy") == "dogleg"
-                                                 ? ceres::DOGLEG
-                                                 : ceres::LEVENBERG_MARQUARDT;
+  ceres_options.trust_region_strategy_type =
+      options_.Word("strategy") == "dogleg" ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
   ceres_options.linear_solver_type = LinearSolverType(LinearSolverWord(options_));
   ceres_options.sparse_linear_algebra_library_type = SparseLibrary();
   ceres_options.initial_trust_region_radius = FirstRadius(options_, objective->problem());

@@ -66,8 +66,9 @@ std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_
     return solver_name + " takes bounds or linear constraints, not both";
   }
   if ((problem.lower_bounds().array() >= problem.upper_bounds().array()).any()) {
-    return solver_name + " needs room between lower and upper bounds; hold a variable by a linear "
-                         "constraint instead";
+    return solver_name +
+           " needs room between lower and upper bounds; hold a variable by a linear "
+           "constraint instead";
   }
   return "";
 }

@@ -18,10 +18,10 @@ namespace batten {
 /// Why `problem` cannot be written as a ceres::Problem, as a sentence for WhyUnsupported; or empty.
 std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_name);
 
-/// A problem in Ceres' own form: its cost is E / 2, its parameter blocks point into state() and stand
-/// in the order of the variables, its residual blocks in the order of the terms and of their blocks.
-/// The objective's monitor is asked before Ceres evaluates; after its first no every evaluation
-/// fails, without a look at the terms.
+/// A problem in Ceres' own form: its cost is E / 2, its parameter blocks point into state() and
+/// stand in the order of the variables, its residual blocks in the order of the terms and of their
+/// blocks. The objective's monitor is asked before Ceres evaluates; after its first no every
+/// evaluation fails, without a look at the terms.
 class CeresProblem final : private ceres::EvaluationCallback {
  public:
   /// `x`: the start in the free variables; it is moved into the bounds. An evaluation counts as one

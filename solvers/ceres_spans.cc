@@ -14,14 +14,12 @@ constexpr int kMaxGatheredRows = 4096;
 class SpanCost final : public ceres::CostFunction {
  public:
   /// triangle = (R C).
-  SpanCost(Points triangle, int dimension)
-      : triangle_(std::move(triangle)), dimension_(dimension) {
+  SpanCost(Points triangle, int dimension) : triangle_(std::move(triangle)), dimension_(dimension) {
     set_num_residuals(static_cast<int>(triangle_.rows()) * dimension);
     mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(num_points()), dimension);
   }
 
-  bool Evaluate(double const* const* points, double* residuals,
-                double** jacobians) const override {
+  bool Evaluate(double const* const* points, double* residuals, double** jacobians) const override {
     for (int i = 0; i < triangle_.rows(); ++i) {
       for (int c = 0; c < dimension_; ++c) {
         double sum = -triangle_(i, num_points() + c);

@@ -18,6 +18,7 @@ class EvaluatedLine : public LineFunction {
         next_gradient_(next_gradient), next_energy_(next_energy) {}
 
   Status Evaluate(LinePoint* point) override {
+    last_step_ = point->step;
     *next_x_ = x_ + point->step * direction_;
     const Status status = objective_->EnergyAndGradient(*next_x_, next_energy_, next_gradient_);
     if (status != Status::kOk) return status;
@@ -25,6 +26,7 @@ class EvaluatedLine : public LineFunction {
     point->slope = next_gradient_->dot(direction_);
     return Status::kOk;
   }
+  double last_step() const { return last_step_; }  // next_x and the others belong to it
 
  private:
   Objective* objective_;
@@ -34,6 +36,7 @@ class EvaluatedLine : public LineFunction {
   Eigen::VectorXd* next_x_;
   Eigen::VectorXd* next_gradient_;
   double* next_energy_;
+  double last_step_ = 0.0;
 };
 
 /// E along a line of a quadratic: a g'd + a^2 d'Hd / 2.
@@ -103,7 +106,7 @@ LineSearchEnd LbfgsSolver::Search(const Eigen::VectorXd& x, double slope, LinePo
     EvaluatedLine line(objective(), x, direction_, energy_, &next_x_, &next_gradient_,
                        &next_energy_);
     const LineSearchEnd end = SearchWolfe(wolfe_, slope, FirstStep(), &line, found);
-    if (end == LineSearchEnd::kFound && (next_x_ - x - found->step * direction_).norm() > 0.0) {
+    if (end == LineSearchEnd::kFound && line.last_step() != found->step) {
       *status = line.Evaluate(found);  // the step taken is not the one tried last
     }
     return end;

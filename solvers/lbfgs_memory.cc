@@ -1,5 +1,6 @@
 #include "solvers/lbfgs_memory.h"
 
+#include <cmath>
 #include <limits>
 
 namespace batten {
@@ -13,8 +14,9 @@ void LbfgsMemory::Clear() {
 bool LbfgsMemory::Add(const Eigen::VectorXd& s, const Eigen::VectorXd& y) {
   const double sy = s.dot(y);
   const double yy = y.squaredNorm();
-  // Below this the curvature along s is rounding noise.
-  if (!(sy > std::numeric_limits<double>::epsilon() * yy * 1e-3) || !(sy > 0.0)) return false;
+  // Below this the curvature along s is rounding noise. The cosine, so that no unit matters.
+  const double noise = std::numeric_limits<double>::epsilon() * s.norm() * std::sqrt(yy);
+  if (!(sy > noise)) return false;
   Pair& pair = pairs_[static_cast<std::size_t>(next_)];
   pair.s = s;
   pair.y = y;

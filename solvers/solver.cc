@@ -63,15 +63,15 @@ Outcome Solver::Minimize(Objective* objective, RunContext* context, Eigen::Vecto
 std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name) {
   if (objective.is_quadratic()) return "";
   if (!objective.options().compile) {
-    return solver_name + " needs compiled rows, but compilation is off";
+    return solver_name + " needs compiled rows, but compilation is off; use lbfgs";
   }
   for (const Problem::TermInstance& term : objective.problem().terms()) {
     if (term.family->rows() == nullptr) {
       return solver_name + " needs terms that are affine, alike for all coordinates and without loss; " +
-             term.name + " is not";
+             term.name + " is not; use lbfgs";
     }
   }
-  return solver_name + " needs constraints that treat all coordinates alike";
+  return solver_name + " needs constraints that treat all coordinates alike; use lbfgs";
 }
 
 std::string WhyNoBounds(const Objective& objective, const std::string& solver_name) {

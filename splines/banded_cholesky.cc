@@ -63,6 +63,16 @@ bool FlushDecayed(double limit, std::vector<double>* entries) {
   return all_zero;
 }
 
+/// Zeros whose number is known to the compiler, so that they can be registers, or (kSize < 0) not.
+template <int kSize>
+auto ZeroScratch([[maybe_unused]] int size) {
+  if constexpr (kSize >= 0) {
+    return std::array<double, kSize>{};
+  } else {
+    return std::vector<double>(size);
+  }
+}
+
 double OneNorm(const std::vector<double>& x) {
   double sum = 0.0;
   for (const double value : x) sum += std::abs(value);
@@ -83,7 +93,6 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
   width_ = matrix.width();
   norm_ = 0.0;
   num_bordered_ = 0;
-  border_.clear();
   dense_.clear();
   if (width_ == 0) return n_ == 0;
   const bool overlaps = matrix.cyclic() && n_ < 2 * width_ - 1;
@@ -97,6 +106,7 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
 
   Pending pending = FirstPending(matrix.band());
   factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
+  border_.resize(static_cast<std::size_t>(num_swept_) * num_border_);
   const bool swept = WithFixedShape(width_, 1, [&](auto width, auto) {
     return Sweep<width>(matrix.band(), &pending);
   });
@@ -127,19 +137,38 @@ BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& 
   return pending;
 }
 
+template <int kWidth>
+[[gnu::always_inline]] inline bool BandedCholesky::SweepBorder(int j, const double* u, Pending* pending) {
+  const int border = kWidth > 0 ? kWidth - 1 : num_border_;
+  double* const row = pending->border.data();
+  double* const corner = pending->corner.data();
+  double* const factor = border_.data() + static_cast<std::size_t>(j) * border;
+  const double inverse = u[0];
+  for (int b = 0; b < border; ++b) factor[b] = row[b] * inverse;
+  for (int a = 0; a < border; ++a) {
+    for (int b = a; b < border; ++b) corner[a * border + b] -= factor[a] * row[b];
+  }
+  // Row i of the window moves up by one; u[i] is already divided by the pivot.
+  for (int b = 0; b < border; ++b) {
+    const double first = row[b];
+    for (int i = 1; i < border; ++i) {
+      row[(i - 1) * border + b] = row[i * border + b] - u[i] * first;
+    }
+    row[(border - 1) * border + b] = -u[border] * first;
+  }
+  num_bordered_ = j + 1;
+  if (num_bordered_ % kDecayInterval != 0) return true;
+  return !FlushDecayed(kDecayed * largest_diagonal_, &pending->border);
+}
+
 // Loops over the window are unrolled by order: its entries then are registers, while an array in
 // memory would be written in other pieces than it is read, which stalls.
 template <int kWidth>
 bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
   const int width = kWidth > 0 ? kWidth : width_;
-  using Window = std::conditional_t<(kWidth > 0), std::array<double, std::max(kWidth * kWidth, 1)>,
-                                    std::vector<double>>;
-  Window window;  // what is left of rows j.., row i from its diagonal to column j + width - 1
-  Window row;     // the first of the window
-  if constexpr (kWidth < 0) {
-    window.resize(width * width);
-    row.resize(width);
-  }
+  // What is left of rows j.., row i from its diagonal to column j + width - 1; the first of them.
+  auto window = ZeroScratch<kWidth < 0 ? -1 : kWidth * kWidth>(width * width);
+  auto row = ZeroScratch<kWidth>(width);
 #pragma GCC unroll 8
   for (int i = 0; i < width; ++i) {
 #pragma GCC unroll 8
@@ -180,30 +209,6 @@ bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
   return true;
 }
 
-template <int kWidth>
-bool BandedCholesky::SweepBorder(int j, const double* u, Pending* pending) {
-  const int border = kWidth > 0 ? kWidth - 1 : num_border_;
-  const double inverse = u[0];
-  double* row = pending->border.data();
-  border_.resize(border_.size() + border);
-  double* factor = border_.data() + border_.size() - border;
-  for (int b = 0; b < border; ++b) factor[b] = row[b] * inverse;
-  for (int a = 0; a < border; ++a) {
-    for (int b = 0; b < border; ++b) pending->corner[a * border + b] -= factor[a] * row[b];
-  }
-  // Row i of the window moves up by one; u[i] is already divided by the pivot.
-  for (int b = 0; b < border; ++b) {
-    const double first = row[b];
-    for (int i = 1; i < border; ++i) {
-      row[(i - 1) * border + b] = row[i * border + b] - u[i] * first;
-    }
-    row[(border - 1) * border + b] = -u[border] * first;
-  }
-  num_bordered_ = j + 1;
-  if (num_bordered_ % kDecayInterval != 0) return true;
-  return !FlushDecayed(kDecayed * largest_diagonal_, &pending->border);
-}
-
 void BandedCholesky::FillDense(const NormalBand& matrix, const Pending& pending) {
   const int size = n_ - num_swept_;
   if (matrix.cyclic() && num_border_ == 0) {
@@ -230,38 +235,55 @@ void BandedCholesky::FillDense(const NormalBand& matrix, const Pending& pending)
   }
 }
 
-template <int kWidth, int kDimension>
-void BandedCholesky::SolveBand(double* x, int dimension) const {
+template <int kWidth, int kDimension, bool kBordered>
+void BandedCholesky::SolveForward(int begin, int end, double* x, int dimension) const {
   const int width = kWidth > 0 ? kWidth : width_;
   const int d = kWidth > 0 ? kDimension : dimension;
-  double* border = x + static_cast<std::size_t>(n_ - num_border_) * d;
-  for (int j = 0; j < num_swept_; ++j) {
+  double* const border = x + static_cast<std::size_t>(n_ - num_border_) * d;
+  auto sum = ZeroScratch<kWidth < 0 ? -1 : kWidth * kDimension>(width * d);
+  for (int j = begin; j < end; ++j) {
     const double* u = factor_.data() + static_cast<std::size_t>(j) * width;
-    double* near = x + static_cast<std::size_t>(j) * d;
+    double* const near = x + static_cast<std::size_t>(j) * d;
     for (int k = 1; k < width; ++k) {
       for (int c = 0; c < d; ++c) near[k * d + c] -= u[k] * near[c];
     }
-    if (j >= num_bordered_) continue;
-    const double* factor = border_.data() + static_cast<std::size_t>(j) * num_border_;
-    for (int b = 0; b < num_border_; ++b) {
-      for (int c = 0; c < d; ++c) border[b * d + c] -= factor[b] * near[c];
+    if (!kBordered) continue;
+    const double* factor = border_.data() + static_cast<std::size_t>(j) * (width - 1);
+    for (int b = 0; b < width - 1; ++b) {
+      for (int c = 0; c < d; ++c) sum[b * d + c] += factor[b] * near[c];
     }
   }
-  SolveDense(n_ - num_swept_, dense_.data(), d, x + static_cast<std::size_t>(num_swept_) * d);
-  for (int j = num_swept_ - 1; j >= 0; --j) {
+  for (int k = 0; kBordered && k < (width - 1) * d; ++k) border[k] -= sum[k];
+}
+
+template <int kWidth, int kDimension, bool kBordered>
+void BandedCholesky::SolveBackward(int begin, int end, double* x, int dimension) const {
+  const int width = kWidth > 0 ? kWidth : width_;
+  const int d = kWidth > 0 ? kDimension : dimension;
+  const double* const border = x + static_cast<std::size_t>(n_ - num_border_) * d;
+  auto known = ZeroScratch<kWidth < 0 ? -1 : kWidth * kDimension>(width * d);
+  for (int k = 0; kBordered && k < (width - 1) * d; ++k) known[k] = border[k];
+  for (int j = end - 1; j >= begin; --j) {
     const double* u = factor_.data() + static_cast<std::size_t>(j) * width;
-    double* near = x + static_cast<std::size_t>(j) * d;
+    const double* factor = border_.data() + static_cast<std::size_t>(j) * num_border_;
+    double* const near = x + static_cast<std::size_t>(j) * d;
     for (int c = 0; c < d; ++c) {
       double sum = near[c] * u[0];
+      for (int b = 0; kBordered && b < width - 1; ++b) sum -= factor[b] * known[b * d + c];
       for (int k = width - 1; k > 0; --k) sum -= u[k] * near[k * d + c];
       near[c] = sum;
     }
-    if (j >= num_bordered_) continue;
-    const double* factor = border_.data() + static_cast<std::size_t>(j) * num_border_;
-    for (int b = 0; b < num_border_; ++b) {
-      for (int c = 0; c < d; ++c) near[c] -= factor[b] * border[b * d + c];
-    }
   }
+}
+
+template <int kWidth, int kDimension>
+void BandedCholesky::SolveBand(double* x, int dimension) const {
+  SolveForward<kWidth, kDimension, true>(0, num_bordered_, x, dimension);
+  SolveForward<kWidth, kDimension, false>(num_bordered_, num_swept_, x, dimension);
+  SolveDense(n_ - num_swept_, dense_.data(), dimension,
+             x + static_cast<std::size_t>(num_swept_) * dimension);
+  SolveBackward<kWidth, kDimension, false>(num_bordered_, num_swept_, x, dimension);
+  SolveBackward<kWidth, kDimension, true>(0, num_bordered_, x, dimension);
 }
 
 void BandedCholesky::Solve(double* x, int dimension) const {

@@ -33,6 +33,11 @@ class BandedCholesky {
   void FillDense(const NormalBand& matrix, const Pending& pending);
   template <int kWidth, int kDimension>
   void SolveBand(double* x, int dimension) const;
+  /// Rows begin..end - 1, all of them with fill in the border or none.
+  template <int kWidth, int kDimension, bool kBordered>
+  void SolveForward(int begin, int end, double* x, int dimension) const;
+  template <int kWidth, int kDimension, bool kBordered>
+  void SolveBackward(int begin, int end, double* x, int dimension) const;
 
   int n_ = 0;
   int width_ = 0;
@@ -42,7 +47,7 @@ class BandedCholesky {
   double norm_ = 0.0;
   double largest_diagonal_ = 0.0;
   std::vector<double> factor_;  // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
-  std::vector<double> border_;  // num_bordered_ x num_border_: U(j, n - num_border_ + b)
+  std::vector<double> border_;  // as many rows x num_border_: U(j, n - num_border_ + b)
   std::vector<double> dense_;   // upper triangle, row-major, 1 / D on its diagonal
 };
 

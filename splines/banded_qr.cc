@@ -194,15 +194,15 @@ void BandedQr::VisitRow(int j, const Visitor& visit) const {
     const int size = 2 * num_border_;
     const int i = j - num_swept_;
     const double* row = dense_.data() + i * (size + shape_.dimension);
-    for (int k = 1; i + k < size; ++k) visit(j + k, row[k]);
+    for (int k = size - 1 - i; k > 0; --k) visit(j + k, row[k]);
     return;
   }
+  if (j < num_bordered_) {
+    const double* border = border_.data() + static_cast<std::size_t>(j) * num_border_;
+    for (int b = 0; b < num_border_; ++b) visit(shape_.num_columns - num_border_ + b, border[b]);
+  }
   const double* row = triangle_.data() + static_cast<std::size_t>(j) * row_size_;
-  const int end = std::min(width_, shape_.num_columns - j);
-  for (int k = 1; k < end; ++k) visit(j + k, row[k]);
-  if (j >= num_bordered_) return;
-  const double* border = border_.data() + static_cast<std::size_t>(j) * num_border_;
-  for (int b = 0; b < num_border_; ++b) visit(shape_.num_columns - num_border_ + b, border[b]);
+  for (int k = std::min(width_, shape_.num_columns - j) - 1; k > 0; --k) visit(j + k, row[k]);
 }
 
 const double* BandedQr::RightHandSide(int j) const {
@@ -235,8 +235,8 @@ void BandedQr::SolveTriangleFixed(double* x) const {
       const double* source = x + static_cast<std::size_t>(column) * kDimension;
       for (int c = 0; c < kDimension; ++c) sum[c] -= entry * source[c];
     });
-    const double pivot = DiagonalEntry(j);
-    for (int c = 0; c < kDimension; ++c) target[c] = sum[c] / pivot;
+    const double inverse = 1.0 / DiagonalEntry(j);
+    for (int c = 0; c < kDimension; ++c) target[c] = sum[c] * inverse;
   }
 }
 

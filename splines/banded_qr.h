@@ -56,7 +56,8 @@ class BandedQr : public RowConsumer {
   void SolveTriangleFixed(double* x) const;
   double DiagonalEntry(int j) const;
   const double* RightHandSide(int j) const;
-  /// visit(column, entry) for the entries of row j of R beside the diagonal.
+  /// visit(column, entry) for the entries of row j of R beside the diagonal; j + 1 comes last, since
+  /// its unknown is the last to be solved for.
   template <typename Visitor>
   void VisitRow(int j, const Visitor& visit) const;
 

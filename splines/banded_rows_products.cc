@@ -41,14 +41,16 @@ class Window {
   std::vector<double> copy_;
 };
 
-/// Sum whose error does not grow with the number of terms (Neumaier 1974).
+/// Sum whose error does not grow with the number of terms (Knuth's two-sum, without branches).
 class CompensatedSum {
  public:
   void Add(double term) {
     const double sum = sum_ + term;
-    lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - sum) + term : (term - sum) + sum_;
+    const double added = sum - sum_;
+    lost_ += (sum_ - (sum - added)) + (term - added);
     sum_ = sum;
   }
+  /// What is lost of an infinite sum is not a number.
   double value() const { return std::isfinite(lost_) ? sum_ + lost_ : sum_; }
 
  private:
@@ -70,35 +72,35 @@ void ResidualOfCoordinate(const RowShape& shape, const RowBlock& block, const do
   }
 }
 
-/// gradient[j * dimension + c] += a_j' residual.
-void AddGradientOfCoordinate(const RowShape& shape, const RowBlock& block, const RowPack* residual,
-                             int c, double* gradient) {
+/// gradient[j * dimension + c] = factor * a_j' residual.
+void GradientOfCoordinate(const RowShape& shape, const RowBlock& block, const RowPack* residual,
+                          int c, double factor, double* gradient) {
   const int packs = block.stride / kPackLanes;
   for (int j = 0; j < shape.width; ++j) {
     const RowPack* a = AsPacks(block.coefficients) + j * packs;
-    RowPack sum = {};
-    for (int i = 0; i < packs; ++i) sum += a[i] * residual[i];
-    gradient[j * shape.dimension + c] += SumOfLanes(sum);
+    gradient[j * shape.dimension + c] = factor * DotPacks(a, residual, packs);
   }
 }
 
-/// ||A P - Q||^2 of a block; with kGradient, gradient (width x dimension) += A'(A P - Q).
+/// ||A P - Q||^2 of a block; with kGradient, gradient (width x dimension) = 2 A'(A P - Q).
 template <int kWidth, int kDimension, bool kGradient, bool kWithData>
 double EvaluateBlock(const RowShape& shape, const RowBlock& block, const double* points,
                      double* gradient) {
   const int packs = block.stride / kPackLanes;
-  RowPack energy = {};
   if constexpr (kWidth < 0) {
+    double energy = 0.0;
     RowPack residual[kMaxRowsPerBlock / kPackLanes];
     for (int c = 0; c < shape.dimension; ++c) {
       ResidualOfCoordinate<kWithData>(shape, block, points, c, residual);
-      for (int i = 0; i < packs; ++i) energy += residual[i] * residual[i];
-      if (kGradient) AddGradientOfCoordinate(shape, block, residual, c, gradient);
+      energy += DotPacks(residual, residual, packs);
+      if (kGradient) GradientOfCoordinate(shape, block, residual, c, 2.0, gradient);
     }
+    return energy;
   } else {
     constexpr int kEntries = kWidth * kDimension;
     RowPack point[kEntries];
     RowPack sum[kEntries] = {};
+    RowPack energy = {};
     for (int k = 0; k < kEntries; ++k) point[k] = Broadcast(points[k]);
     const RowPack* a = AsPacks(block.coefficients);
     const RowPack* q = AsPacks(block.right_hand_sides);
@@ -114,28 +116,27 @@ double EvaluateBlock(const RowShape& shape, const RowBlock& block, const double*
         for (int j = 0; j < kWidth; ++j) sum[j * kDimension + c] += a[j * packs + i] * residual[c];
       }
     }
-    if (kGradient) {
-      for (int k = 0; k < kEntries; ++k) gradient[k] += SumOfLanes(sum[k]);
-    }
+    for (int k = 0; kGradient && k < kEntries; ++k) gradient[k] = 2.0 * SumOfLanes(sum[k]);
+    return SumOfLanes(energy);
   }
-  return SumOfLanes(energy);
 }
 
 template <int kWidth, int kDimension, bool kGradient, bool kWithData>
 double EvaluateAll(const BandedRows& rows, const double* points, double* gradient) {
-  const RowShape shape = rows.shape();
+  RowShape shape = rows.shape();
+  if (kWidth > 0) {  // known to the loops over the window too
+    shape.width = kWidth;
+    shape.dimension = kDimension;
+  }
   Window window(shape);
   std::vector<double> part(static_cast<std::size_t>(shape.width) * shape.dimension);
   CompensatedSum energy;
   for (std::size_t index = 0; index < rows.num_blocks(); ++index) {
     const RowBlock block = rows.BlockAndPrefetch(index);
     const double* near = window.Gather(points, block.first_column);
-    if (kGradient) std::fill(part.begin(), part.end(), 0.0);
     energy.Add(EvaluateBlock<kWidth, kDimension, kGradient, kWithData>(shape, block, near,
                                                                        part.data()));
-    if (!kGradient) continue;
-    for (double& value : part) value *= 2.0;
-    window.Add(part.data(), block.first_column, gradient);
+    if (kGradient) window.Add(part.data(), block.first_column, gradient);
   }
   return energy.value();
 }
@@ -182,11 +183,10 @@ void BandedRows::AddTransposedProduct(const double* r, double* product) const {
   for (std::size_t index = 0; index < num_blocks(); ++index) {
     const RowBlock rows = BlockAndPrefetch(index);
     const double* source = r + static_cast<std::size_t>(blocks_[index].first_row) * d;
-    std::fill(part.begin(), part.end(), 0.0);
     for (int c = 0; c < d; ++c) {
       for (int i = 0; i < rows.num_rows; ++i) value[i] = source[i * d + c];
       std::fill(value + rows.num_rows, value + rows.stride, 0.0);
-      AddGradientOfCoordinate(shape_, rows, coordinate, c, part.data());
+      GradientOfCoordinate(shape_, rows, coordinate, c, 1.0, part.data());
     }
     window.Add(part.data(), rows.first_column, product);
   }

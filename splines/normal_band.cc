@@ -119,19 +119,30 @@ void NormalBand::MultiplyRow(int j, const double* v, double* product) const {
   };
   for (int k = shape_.width - 1; k > 0; --k) {
     if (j - k < 0 && !shape_.cyclic) continue;
-    const int before = ((j - k) % n + n) % n;
+    const int before = j >= k ? j - k : ((j - k) % n + n) % n;
     add(before, k, before);
   }
   for (int k = 0; k < shape_.width; ++k) {
     if (j + k >= n && !shape_.cyclic) break;
-    add(j, k, (j + k) % n);
+    add(j, k, WrappedColumn(j + k));
   }
 }
 
 template <int kWidth, int kDimension>
 void NormalBand::MultiplyInside(int begin, int end, const double* v, double* product) const {
   if constexpr (kWidth < 0) {
-    for (int j = begin; j < end; ++j) MultiplyRow(j, v, product);
+    const int width = shape_.width;
+    const int d = shape_.dimension;
+    for (int j = begin; j < end; ++j) {
+      const double* entry = band_.data() + static_cast<std::size_t>(j) * width;
+      const double* near = v + static_cast<std::size_t>(j) * d;
+      for (int c = 0; c < d; ++c) {
+        double sum = 0.0;
+        for (int k = width - 1; k > 0; --k) sum += entry[k - k * width] * near[c - k * d];
+        for (int k = 0; k < width; ++k) sum += entry[k] * near[k * d + c];
+        product[static_cast<std::size_t>(j) * d + c] = sum;
+      }
+    }
   } else {
     for (int j = begin; j < end; ++j) {
       const double* entry = band_.data() + static_cast<std::size_t>(j) * kWidth;
@@ -153,8 +164,9 @@ void NormalBand::MultiplyInside(int begin, int end, const double* v, double* pro
 
 void NormalBand::Multiply(const double* v, double* product) const {
   const int n = shape_.num_columns;
-  const int inside_begin = std::min(std::max(shape_.width - 1, 0), n);
-  const int inside_end = std::max(inside_begin, n - shape_.width + 1);
+  const int reach = std::max(shape_.width - 1, 0);
+  const int inside_begin = std::min(reach, n);
+  const int inside_end = std::max(inside_begin, n - reach);
   for (int j = 0; j < inside_begin; ++j) MultiplyRow(j, v, product);
   WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
     MultiplyInside<width, dimension>(inside_begin, inside_end, v, product);

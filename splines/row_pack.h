@@ -65,6 +65,7 @@ auto WithFixedShape(int width, int dimension, const Kernel& kernel) {
   if (width == 2) return with_width(integral_constant<int, 2>());
   if (width == 3) return with_width(integral_constant<int, 3>());
   if (width == 4) return with_width(integral_constant<int, 4>());
+  if (width == 5) return with_width(integral_constant<int, 5>());
   if (width == 6) return with_width(integral_constant<int, 6>());
   return kernel(integral_constant<int, -1>(), integral_constant<int, -1>());
 }

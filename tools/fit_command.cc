@@ -76,13 +76,31 @@ std::vector<std::string> TermNames(const Problem& problem) {
   return names;
 }
 
+/// What a run is written to.
+struct Written {
+  std::vector<std::string> files;
+  std::string problem;  // not empty: something is missing all the same
+};
+
+bool DrawFitFigure(const Problem& problem, const RunResult& run, Written* written,
+                   std::string* error) {
+  const FigureResult figure = FitFigure(problem, run, WithExtension(FLAGS_figure, ""));
+  if (IsWriteError(figure)) {
+    *error = figure.message;
+    return false;
+  }
+  if (figure.drawn) written->files.push_back(FLAGS_figure);
+  if (!figure.drawn) written->problem = "--figure: " + figure.message;
+  return true;
+}
+
 /// All files are filled before the first takes its place: a full disk leaves none of them.
 bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spec,
-                const FitReport& report, std::vector<std::string>* written, std::string* error) {
+                const FitReport& report, Written* written, std::string* error) {
   std::list<AtomicFile> files;
   const auto open = [&](const std::string& path) -> std::ostream* {
     files.emplace_back();
-    written->push_back(path);
+    written->files.push_back(path);
     return files.back().Open(path, error) ? &files.back().stream() : nullptr;
   };
   if (WasGiven("out")) {
@@ -103,6 +121,7 @@ bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spe
   for (AtomicFile& file : files) {
     if (!file.stream().flush()) return file.Commit(error);  // says why
   }
+  if (WasGiven("figure") && !DrawFitFigure(problem, run, written, error)) return false;
   for (AtomicFile& file : files) {
     if (!file.Commit(error)) return false;
   }
@@ -122,13 +141,14 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
   if (!run.skipped.empty()) return Refuse("--solver: " + run.skipped, output);
 
   const FitReport report = MeasureFit(*problem, run, spec);
-  std::vector<std::string> written;
+  Written written;
   if (!WriteFiles(*problem, run, spec, report, &written, &output->error)) return kBadInput;
-  output->results = FitSummary(request.label, *problem, run, report, written);
+  output->results = FitSummary(request.label, *problem, run, report, written.files);
   if (report.audited && !report.verdict.holds) {
     output->error = "audit: " + solver.ToString() + " " + report.verdict.failure;
     return kDisagreement;
   }
+  if (!written.problem.empty()) return Refuse(written.problem, output);
   if (ReachedTarget(run, spec, report)) return kDone;
   output->error = NotReachedMessage(run, spec);
   return kNotReached;
@@ -140,6 +160,9 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
   if (!SolversFromFlag("solver", FLAGS_solver, &solvers, error)) return kBadInput;
   if (solvers.size() != 1) {
     return Refuse(RefusedFlag("solver", FLAGS_solver, "one solver"), output);
+  }
+  if (WasGiven("figure") && WithExtension(FLAGS_figure, ".svg") != FLAGS_figure) {
+    return Refuse(RefusedFlag("figure", FLAGS_figure, "a file whose name ends in .svg"), output);
   }
   FitRequest request;
   if (!MakeFitRequest(positional, &request, error)) return kBadInput;

@@ -26,10 +26,15 @@ bool IsWhole(const FlagInfo& flag) {
   return IsNumber(flag) && DefinedFlag(flag.name).type != "double";
 }
 
+// 10000000 and not 1e+07 where numbers are counts.
+std::string LimitText(const FlagInfo& flag, double limit) {
+  return IsWhole(flag) ? std::to_string(std::llround(limit)) : NumberText(limit);
+}
+
 std::string RangeText(const FlagInfo& flag) {
-  const std::string from = (flag.above_lowest ? "above " : "") + NumberText(flag.lowest);
+  const std::string from = (flag.above_lowest ? "above " : "") + LimitText(flag, flag.lowest);
   if (std::isinf(flag.highest)) return flag.above_lowest ? from : "at least " + from;
-  return from + " to " + NumberText(flag.highest);
+  return from + " to " + LimitText(flag, flag.highest);
 }
 
 std::string WordsText(const FlagInfo& flag) {
@@ -128,7 +133,7 @@ std::string DefaultText(const FlagInfo& flag) {
       (number < flag.lowest || number > flag.highest)) {
     return "";
   }
-  return "default: " + (IsNumber(flag) ? NumberText(number) : defined.default_value);
+  return "default: " + (IsNumber(flag) ? LimitText(flag, number) : defined.default_value);
 }
 
 std::string HelpText(const FlagInfo& flag) {

@@ -166,9 +166,8 @@ TEST_P(Interpolation, BindsExactlyTheVariablesOfItsJacobian) {
     for (int block = 0; block < family->size(); ++block) {
       std::vector<int> offsets, sizes;
       family->Bind(x, block, &offsets, &sizes);
-      Eigen::VectorXd outside = jacobian.middleRows(block * dimension(), dimension())
-                                    .colwise()
-                                    .lpNorm<Eigen::Infinity>();
+      Eigen::VectorXd outside =
+          jacobian.middleRows(block * dimension(), dimension()).colwise().lpNorm<Eigen::Infinity>();
       for (std::size_t k = 0; k < offsets.size(); ++k) {
         EXPECT_EQ(sizes[k], dimension());
         outside.segment(offsets[k], sizes[k]).setZero();

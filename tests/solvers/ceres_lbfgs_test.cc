@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -34,17 +35,12 @@ bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
-/// Evaluation by evaluation: equal kinds at equal points, and the same end.
-void ExpectSameTrial(const LbfgsTrial& a, const LbfgsTrial& b) {
-  ASSERT_EQ(a.context.evaluations().size(), b.context.evaluations().size());
-  for (std::size_t i = 0; i < a.context.evaluations().size(); ++i) {
-    ASSERT_EQ(a.context.evaluations()[i].kind, b.context.evaluations()[i].kind) << i;
-    ASSERT_TRUE(SameBits(a.context.evaluations()[i].x, b.context.evaluations()[i].x)) << i;
-  }
-  EXPECT_EQ(a.context.iterates().size(), b.context.iterates().size());
-  EXPECT_TRUE(SameBits(a.x, b.x));
-  EXPECT_EQ(a.outcome.reason, b.outcome.reason);
-  EXPECT_EQ(a.outcome.message, b.outcome.message);
+bool SamePoints(const TestContext& a, const TestContext& b) {
+  const auto same = [](const TestContext::Evaluated& first, const TestContext::Evaluated& second) {
+    return first.kind == second.kind && SameBits(first.x, second.x);
+  };
+  return std::equal(a.evaluations().begin(), a.evaluations().end(), b.evaluations().begin(),
+                    b.evaluations().end(), same);
 }
 
 struct FormsCase {
@@ -66,8 +62,7 @@ const FormsCase kFormsCases[] = {
      [] { return MakeFit(MakeNoisyLoop(120, 3, 1), MakeSpec(3, true, 17)); }},
     {"ClosedLoopInFourDimensions",
      [] { return MakeFit(MakeNoisyLoop(120, 4, 2), MakeSpec(3, true, 17)); }},
-    {"OpenLineOfNumbers",
-     [] { return MakeFit(MakeNoisyLoop(120, 1, 3), MakeSpec(3, false, 21)); }},
+    {"OpenLineOfNumbers", [] { return MakeFit(MakeNoisyLoop(120, 1, 3), MakeSpec(3, false, 21)); }},
     {"ParabolasWithCompiledSizes",
      [] { return MakeFit(MakeNoisyLoop(90, 2, 4), MakeSpec(2, true, 25)); }},
     {"QuinticsWithCompiledSizes",
@@ -101,15 +96,29 @@ TEST_P(CeresLbfgsForms, ObjectiveAndCeresProblemVisitTheSamePointsBitForBit) {
   const LbfgsTrial objective(*problem, WithForm("objective"), {}, uncompiled);
   const LbfgsTrial native(*problem, WithForm("problem"), {}, uncompiled);
   ASSERT_GT(objective.context.iterates().size(), 10U);
-  ExpectSameTrial(objective, native);
+  EXPECT_TRUE(SamePoints(objective.context, native.context));
+  EXPECT_EQ(objective.context.iterates().size(), native.context.iterates().size());
+  EXPECT_TRUE(SameBits(objective.x, native.x));
+  EXPECT_EQ(objective.outcome.reason, native.outcome.reason);
+  EXPECT_EQ(objective.outcome.message, native.outcome.message);
+}
+
+TEST(CeresLbfgs, BothFormsVisitTheSamePointsOfEveryTestFunction) {
+  for (const TestFunction& function : TestFunctions()) {
+    const auto problem = MakeTestProblem(function.name);
+    const LbfgsTrial objective(*problem, WithForm("objective"));
+    const LbfgsTrial native(*problem, WithForm("problem"));
+    EXPECT_TRUE(SamePoints(objective.context, native.context)) << function.name;
+    EXPECT_TRUE(SameBits(objective.x, native.x)) << function.name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Problems, CeresLbfgsForms, ::testing::ValuesIn(kFormsCases),
                          [](const auto& row) { return row.param.name; });
 
 TEST(CeresLbfgs, EveryFormComesAsNearToTheDirectAnswerAsItsLineSearchCanSee) {
-  // A line search stops where it cannot tell two values of E apart, hence at a gap of some roundings
-  // of E; the sums over 100 points and the spread of curvatures take up the rest.
+  // A line search stops where it cannot tell two values of E apart, hence at a gap of some
+  // roundings of E; the sums over 100 points and the spread of curvatures take up the rest.
   const double kRoundings = 1e3;
   const auto problem = Rhino();
   const Trial<BandedQrSolver> direct(*problem, "banded_qr");
@@ -175,7 +184,8 @@ TEST(CeresLbfgs, StopsWhenTheMonitorSaysNoAndAsksItNoMore) {
 }
 
 TEST(CeresLbfgs, BooksAStartWithoutGradientOnce) {
-  const auto problem = MakeFit(MakeNoisyLoop(30, 2, 10), MakeSpec(3, true, 8, "interpolation/weight=0"));
+  const auto problem =
+      MakeFit(MakeNoisyLoop(30, 2, 10), MakeSpec(3, true, 8, "interpolation/weight=0"));
   for (const char* form : kForms) {
     LbfgsTrial trial(*problem, WithForm(form));
     EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << form;
@@ -213,14 +223,13 @@ TEST(CeresLbfgs, MeetsLinearConstraintsInEveryForm) {
 }
 
 TEST(CeresLbfgs, EveryOptionChangesTheRunAndStillArrives) {
-  const auto problem = Rhino();
+  const auto problem = MakeTestProblem("rosenbrock");
   const LbfgsTrial plain(*problem, "ceres_lbfgs");
-  for (const char* option : {"memory=3", "scaling=on", "interpolation=quadratic",
-                             "interpolation=bisection", "decrease=0.3", "curvature=0.1"}) {
+  for (const char* option : {"memory=2", "scaling=on", "interpolation=quadratic",
+                             "interpolation=bisection", "curvature=0.1"}) {
     LbfgsTrial trial(*problem, std::string("ceres_lbfgs/") + option);
-    EXPECT_NE(trial.context.evaluations().size(), plain.context.evaluations().size()) << option;
-    // Line searches end at the root of eps times E over the gap of the start, about 1e-8 here.
-    EXPECT_LE(trial.gradient_ratio(), 1e-6) << option;
+    EXPECT_FALSE(SamePoints(trial.context, plain.context)) << option;
+    EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << option;
   }
 }
 
@@ -229,8 +238,6 @@ TEST(CeresLbfgs, SaysWhyNot) {
   EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, "ceres_lbfgs"), IsEmpty());
   EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, WithForm("spans")),
               HasSubstr("ceres_lbfgs/form=spans needs terms that are affine"));
-  EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, "ceres_lbfgs/decrease=0.4/curvature=0.3"),
-              HasSubstr("decrease is 0.4, curvature 0.3"));
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(robust->num_variables());
   robust->SetBounds(-one, one);
   EXPECT_THAT(WhyUnsupported<CeresLbfgsSolver>(*robust, "ceres_lbfgs"),

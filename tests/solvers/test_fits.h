@@ -37,8 +37,8 @@ inline std::unique_ptr<Problem> MakeFileFit(const std::string& path, FitSpec spe
   return problem;
 }
 
-/// Points near a bent loop without symmetry, off it by noise of standard deviation 0.1, with weights
-/// in [0.1, 2].
+/// Points near a bent loop without symmetry, off it by noise of standard deviation 0.1, with
+/// weights in [0.1, 2].
 inline DataSet MakeNoisyLoop(int num_points, int dimension, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.1);
@@ -50,8 +50,8 @@ inline DataSet MakeNoisyLoop(int num_points, int dimension, unsigned seed) {
   for (int i = 0; i < num_points; ++i) {
     const double angle = 6.28 * i / num_points;
     for (int c = 0; c < dimension; ++c) {
-      data.points(i, c) = 3.0 * std::sin((c + 1) * angle + 0.7 * c) + std::cos(2.0 * angle + c) +
-                          noise(random);
+      data.points(i, c) =
+          3.0 * std::sin((c + 1) * angle + 0.7 * c) + std::cos(2.0 * angle + c) + noise(random);
     }
     (*data.weights)[i] = weight(random);
   }
@@ -65,7 +65,8 @@ inline std::unique_ptr<Problem> MakeFit(DataSet data, FitSpec spec) {
   return problem;
 }
 
-/// sum_j B_j(t) P_j = value in coordinate `coordinate`, inside the problem (scaled); t in the domain.
+/// sum_j B_j(t) P_j = value in coordinate `coordinate`, inside the problem (scaled); t in the
+/// domain.
 inline LinearConstraint HoldCurve(const Problem& problem, double t, int coordinate, double value) {
   const CurveFit& fit = *problem.curve_fit();
   const BsplineBasis& basis = fit.basis();

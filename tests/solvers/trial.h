@@ -32,9 +32,7 @@ struct Trial {
     outcome = MakeSolver<SolverClass>(name_and_options).Minimize(&objective, &context, &x);
   }
   /// |g| at the end over |g| at the start.
-  double gradient_ratio() {
-    return context.GradientNorm(x) / context.gradient_norms().front();
-  }
+  double gradient_ratio() { return context.GradientNorm(x) / context.gradient_norms().front(); }
 
   TestContext context;
   Eigen::VectorXd x;

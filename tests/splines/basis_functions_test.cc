@@ -123,6 +123,7 @@ Pack Lanewise(const Pack& a, const Pack& b, Operation operation) {
 Pack operator+(const Pack& a, const Pack& b) { return Lanewise(a, b, std::plus<>()); }
 Pack operator-(const Pack& a, const Pack& b) { return Lanewise(a, b, std::minus<>()); }
 Pack operator*(const Pack& a, const Pack& b) { return Lanewise(a, b, std::multiplies<>()); }
+Pack operator+(double a, const Pack& b) { return Pack(a) + b; }
 Pack operator-(const Pack& a, double b) { return a - Pack(b); }
 Pack operator-(double a, const Pack& b) { return Pack(a) - b; }
 Pack operator*(const Pack& a, double b) { return a * Pack(b); }
@@ -134,10 +135,13 @@ TEST(BasisFunctions, PacksOfParametersGiveWhatSingleOnesGive) {
   t.lanes = {0.3, 0.41, 0.52, 0.599};
   Pack values[8];
   EvaluateBasisDerivatives<3>(3, knots, 3, t, 1, values);
+  Pack prepared[4];
+  SpanBasis<3, Pack>(3, knots, 3).Evaluate(t, prepared);
   for (int lane = 0; lane < 4; ++lane) {
     double expected[8];
     EvaluateBasisDerivatives<3>(3, knots, 3, t.lanes[lane], 1, expected);
     for (int k = 0; k < 8; ++k) EXPECT_DOUBLE_EQ(values[k].lanes[lane], expected[k]);
+    for (int k = 0; k < 4; ++k) EXPECT_DOUBLE_EQ(prepared[k].lanes[lane], expected[k]);
   }
 }
 

@@ -36,6 +36,7 @@ class ListedRows : public RowSource {
     by_column_[first_column].push_back({coefficients, right_hand_sides});
     ++shape_.num_rows;
   }
+  std::size_t NumRowsAt(int first_column) const { return by_column_[first_column].size(); }
   /// At most this many rows a block.
   void set_rows_per_block(int rows) { rows_per_block_ = rows; }
 
@@ -121,22 +122,36 @@ inline int NumWindows(const BandCase& c) {
   return c.cyclic ? c.num_columns : c.num_columns - c.width + 1;
 }
 
-/// `least`..`most` rows of entries uniform in (-1, 1) on each window.
-inline ListedRows RandomRows(const BandCase& c, int least, int most, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> entry(-1.0, 1.0);
+/// `least`..`most` rows on each window, their entries from `entry()`.
+template <typename Entry>
+ListedRows MakeRows(const BandCase& c, int least, int most, std::mt19937* random,
+                    const Entry& entry) {
   std::uniform_int_distribution<int> count(least, most);
   ListedRows rows(c.num_columns, c.width, c.dimension, c.cyclic);
   std::vector<double> coefficients(c.width);
   std::vector<double> right(c.dimension);
   for (int column = 0; column < NumWindows(c); ++column) {
-    for (int i = count(random); i > 0; --i) {
-      for (double& value : coefficients) value = entry(random);
-      for (double& value : right) value = entry(random);
+    for (int i = count(*random); i > 0; --i) {
+      for (double& value : coefficients) value = entry();
+      for (double& value : right) value = entry();
       rows.Add(column, coefficients, right);
     }
   }
   return rows;
+}
+
+/// Entries uniform in (-1, 1).
+inline ListedRows RandomRows(const BandCase& c, int least, int most, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> entry(-1.0, 1.0);
+  return MakeRows(c, least, most, &random, [&] { return entry(random); });
+}
+
+/// Integer entries in -3..3: products and sums are exact, in any order.
+inline ListedRows IntegerRows(const BandCase& c, int least, int most, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> entry(-3, 3);
+  return MakeRows(c, least, most, &random, [&] { return entry(random); });
 }
 
 /// Rows of a uniform B-spline's collocation matrix, `rows_per_span` at random places of each span
@@ -175,7 +190,40 @@ inline Points RandomPoints(int n, int dimension, unsigned seed) {
   return points;
 }
 
-/// Widths 2..10, dimensions 1..4, open and cyclic, the smallest n, those around where a cyclic
+inline Points IntegerPoints(int n, int dimension, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> entry(-5, 5);
+  Points points(n, dimension);
+  for (Eigen::Index k = 0; k < points.size(); ++k) points.data()[k] = entry(random);
+  return points;
+}
+
+/// [A | Q] of any source, in the order of Stream.
+inline Eigen::MatrixXd AllRows(const RowSource& source) {
+  struct Reader : RowConsumer {
+    explicit Reader(const RowShape& s)
+        : shape(s), all(Eigen::MatrixXd::Zero(s.num_rows, s.num_columns + s.dimension)) {}
+    void Consume(const RowBlock& block) override {
+      for (int i = 0; i < block.num_rows; ++i, ++next) {
+        for (int j = 0; j < shape.width; ++j) {
+          const double a = block.coefficients[j * block.stride + i];
+          if (a != 0.0) all(next, (block.first_column + j) % shape.num_columns) += a;
+        }
+        for (int c = 0; c < shape.dimension; ++c) {
+          all(next, shape.num_columns + c) = block.right_hand_sides[c * block.stride + i];
+        }
+      }
+    }
+    RowShape shape;
+    Eigen::MatrixXd all;
+    int next = 0;
+  };
+  Reader reader(source.shape());
+  source.Stream(&reader);
+  return reader.all;
+}
+
+/// Widths 1..10, dimensions 1..4, open and cyclic, the smallest n, those around where a cyclic
 /// band overlaps itself, and larger ones. Widths 2, 3, 4, 6 with d <= 3 have loops of fixed length.
 inline std::vector<BandCase> AllBandCases() {
   std::vector<BandCase> cases;

@@ -1,0 +1,194 @@
+#include "experiments/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "experiments/figure_panels.h"
+#include "experiments/short_number.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+namespace {
+
+constexpr int kMostPoints = 20000;  // drawn; an SVG of a million is no picture any more
+constexpr int kMostSamples = 40000;
+
+/// Columns (t, coordinates) in dimension 1, coordinates otherwise.
+std::string Line(double t, const double* coordinates, int dimension) {
+  std::vector<double> values(coordinates, coordinates + dimension);
+  if (dimension == 1) values.insert(values.begin(), t);
+  return GnuplotNumbers(values);
+}
+
+std::string ColumnNames(int dimension) {
+  const std::string all = "x y z w";
+  return dimension == 1 ? "# t x\n" : "# " + all.substr(0, 2 * dimension - 1) + "\n";
+}
+
+std::string DataName(int step) {
+  return step == 1 ? "data" : "data (every " + std::to_string(step) + "th)";
+}
+
+std::string DataBlock(const CurveFit& fit, int step) {
+  std::string text = "# " + DataName(step) + "\n" + ColumnNames(fit.dimension());
+  const Points& points = fit.data().points;
+  for (Eigen::Index i = 0; i < points.rows(); i += step) {
+    text += Line(fit.parameters()[i], points.row(i).data(), fit.dimension());
+  }
+  return text;
+}
+
+/// In dimension 1 control point j stands at its Greville abscissa.
+std::string PolygonBlock(const BsplineBasis& basis, const Points& control_points) {
+  const int d = static_cast<int>(control_points.cols());
+  std::vector<int> order(static_cast<std::size_t>(basis.num_control_points()));
+  std::iota(order.begin(), order.end(), 0);
+  if (d == 1) {
+    // On closed curves some abscissae come from the turn before.
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return basis.Greville(a) < basis.Greville(b); });
+  } else if (basis.periodic()) {
+    order.push_back(0);
+  }
+  std::string text = "# control polygon\n" + ColumnNames(d);
+  for (const int j : order) text += Line(basis.Greville(j), control_points.row(j).data(), d);
+  return text;
+}
+
+/// Every span alike, its ends included.
+std::string CurveBlock(const BsplineCurve& curve) {
+  const BsplineBasis& basis = curve.basis();
+  const int d = curve.dimension();
+  constexpr int kSamplesPerSpan = 24;
+  const int most = std::clamp(kMostSamples / basis.num_domain_spans(), 2, kSamplesPerSpan);
+  const int per_span = basis.degree() == 1 ? 1 : most;
+  std::string text = "# curve\n" + ColumnNames(d);
+  std::vector<double> point(static_cast<std::size_t>(d));
+  for (int k = basis.first_span(); k <= basis.last_span(); ++k) {
+    const double begin = basis.knots()[k];
+    const double length = basis.knots()[k + 1] - begin;
+    for (int s = 0; s < per_span && length > 0.0; ++s) {
+      const double t = begin + length * s / per_span;
+      curve.Evaluate(t, 0, point.data());
+      text += Line(t, point.data(), d);
+    }
+  }
+  // A closed curve ends where it began.
+  curve.Evaluate(basis.domain_end(), 0, point.data());
+  return text + Line(basis.domain_end(), point.data(), d);
+}
+
+/// The axes' ranges: data and control points, with a margin that is alike for all.
+std::vector<FigureAxis> Axes(const CurveFit& fit, const Points& control_points) {
+  static const char* const kNames[] = {"x", "y", "z", "w"};
+  constexpr double kMargin = 0.04;
+  constexpr double kThinnest = 0.08;  // of the longest side
+  const Points& points = fit.data().points;
+  const auto low = points.colwise().minCoeff().cwiseMin(control_points.colwise().minCoeff()).eval();
+  const auto high =
+      points.colwise().maxCoeff().cwiseMax(control_points.colwise().maxCoeff()).eval();
+  const double longest = (high - low).maxCoeff();
+  const double side = longest > 0.0 ? longest : 1.0;
+  std::vector<FigureAxis> axes;
+  for (int c = 0; c < fit.dimension(); ++c) {
+    const double thin = std::max(0.0, kThinnest * side - (high[c] - low[c])) / 2;
+    const double margin = kMargin * side + thin;
+    axes.push_back({kNames[c], c + 1, low[c] - margin, high[c] + margin});
+  }
+  return axes;
+}
+
+std::vector<FigurePanel> Panels(const CurveFit& fit, const Points& control_points) {
+  const std::vector<FigureAxis> axes = Axes(fit, control_points);
+  const auto panel = [&axes](int across, int up) {
+    FigurePanel made;
+    made.horizontal = axes[static_cast<std::size_t>(across)];
+    made.vertical = axes[static_cast<std::size_t>(up)];
+    return made;
+  };
+  switch (fit.dimension()) {
+    case 1: {
+      FigurePanel made = panel(0, 0);
+      made.horizontal = {"t", 1, fit.basis().domain_begin(), fit.basis().domain_end()};
+      made.vertical.column = 2;
+      return {made};
+    }
+    case 2:
+      return {panel(0, 1)};
+    case 3:
+      return {panel(0, 1), panel(0, 2), panel(1, 2)};
+    default:
+      return {panel(0, 1), panel(2, 3)};
+  }
+}
+
+/// Data so dense that they would hide the curve are drawn below it, as a rim.
+bool IsDense(int num_points) { return num_points > 400; }
+
+std::string Styles(int num_points, int num_control_points) {
+  const double data = IsDense(num_points) ? 0.35 : std::min(0.45, 4.0 / std::sqrt(num_points));
+  const double control = std::clamp(3.0 / std::sqrt(num_control_points), 0.1, 0.35);
+  return "set style line 1 linecolor rgb '#0050d0' pointtype 7 pointsize " + ShortNumber(data, 2) +
+         "  # data\n" +
+         "set style line 2 linecolor rgb '#000000' linewidth 0.6 pointtype 4 pointsize " +
+         ShortNumber(control, 2) + "  # control polygon\n" +
+         "set style line 3 linecolor rgb '#d81010' linewidth " +
+         (IsDense(num_points) ? "1.2" : "1.6") +
+         "  # curve\n"
+         "set border 3 linewidth 0.8\n"
+         "set tics nomirror out scale 0.6\n";
+}
+
+std::string PlotCommand(const FigurePanel& panel, bool dense) {
+  const std::string columns = " using " + std::to_string(panel.horizontal.column) + ":" +
+                              std::to_string(panel.vertical.column);
+  const std::string data = "DATA index 0" + columns + " with points linestyle 1 notitle";
+  const std::string curve = "DATA index 2" + columns + " with lines linestyle 3 notitle";
+  return "plot DATA index 1" + columns + " with linespoints linestyle 2 notitle, \\\n     " +
+         (dense ? data : curve) + ", \\\n     " + (dense ? curve : data) + "\n";
+}
+
+/// A plot of nothing over the whole width: only there the entries stand in one line.
+std::string Legend(int step) {
+  return "unset border\nunset tics\nunset xlabel\nunset ylabel\n"
+         "set lmargin at screen 0\nset rmargin at screen 1\n"
+         "set bmargin at screen 0\nset tmargin at screen 1\n"
+         "set xrange [0:1]\nset yrange [0:1]\n"
+         "set key at screen 0.5, screen 0.01 center bottom horizontal Left reverse samplen 2.5\n"
+         "plot NaN with points linestyle 1 pointsize 0.45 title " +
+         GnuplotString(DataName(step)) +
+         ", \\\n     NaN with linespoints linestyle 2 pointsize 0.35 title 'control polygon', \\\n"
+         "     NaN with lines linestyle 3 title 'curve'\n";
+}
+
+}  // namespace
+
+FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::string& stem) {
+  const CurveFit* fit = problem.curve_fit();
+  FigureResult result;
+  if (fit == nullptr || run.x.size() != problem.num_variables() || !run.x.allFinite()) {
+    result.message = problem.name() + ": there is no curve to draw";
+    return result;
+  }
+  const Points control_points = fit->ControlPoints(run.x);
+  const int m = static_cast<int>(fit->data().points.rows());
+  const int n = fit->basis().num_control_points();
+  const int step = (m + kMostPoints - 1) / kMostPoints;
+  const std::string data = DataBlock(*fit, step) + "\n\n" +
+                           PolygonBlock(fit->basis(), control_points) + "\n\n" +
+                           CurveBlock(fit->Curve(run.x));
+  const FigureCanvas canvas = LayOutPanels(Panels(*fit, control_points), fit->dimension() > 1);
+  const std::string title = problem.name() + ": " + std::to_string(m) + " points, " +
+                            std::to_string(n) + " control points, " + run.solver.ToString();
+  std::string commands = Styles(m, n) + "set label 1 " + GnuplotString(title) +
+                         " at screen 0.5, screen 1 center offset 0,-1.2 noenhanced\n" +
+                         "set multiplot\n";
+  for (const FigurePanel& panel : canvas.panels) {
+    commands += PanelCommands(canvas, panel) + PlotCommand(panel, IsDense(m)) + "unset label 1\n";
+  }
+  return DrawFigure(stem, data, commands + Legend(step) + "unset multiplot\n", canvas.width,
+                    canvas.height);
+}
+
+}  // namespace batten

@@ -1,0 +1,27 @@
+#ifndef BATTEN_EXPERIMENTS_FIGURES_H_
+#define BATTEN_EXPERIMENTS_FIGURES_H_
+
+#include <string>
+#include <vector>
+
+#include "experiments/comparison.h"
+#include "experiments/gnuplot.h"
+
+namespace batten {
+
+/// The fit at the end of `run`: data blue, control polygon black, curve red, axes of equal scale.
+/// Dimension 1: against t; 3: the projections xy, xz, yz; 4: xy and zw. Of more than 20,000 points
+/// every k-th is drawn.
+FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::string& stem);
+
+/// Energy gap and gradient norm against iteration, log scale, all `rows` (of one problem) in one
+/// plot; rows without a trace are left out. Where no E* is known, the energy itself.
+FigureResult ConvergenceFigure(const std::vector<const ComparisonRow*>& rows,
+                               const std::string& stem);
+
+/// The rows of one problem of a comparison.
+std::vector<const ComparisonRow*> RowsOfProblem(const ComparisonResult& result, int problem_index);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_FIGURES_H_

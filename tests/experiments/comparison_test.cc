@@ -1,0 +1,303 @@
+#include "experiments/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "experiments/comparison_reference.h"
+#include "problems/fit_problem.h"
+#include "solvers/solver_registry.h"
+
+namespace batten {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+std::vector<NameSpec> Solvers(const std::string& list) {
+  std::vector<NameSpec> solvers;
+  std::string error;
+  EXPECT_TRUE(ParseNameSpecList(list, &solvers, &error)) << error;
+  return solvers;
+}
+
+ComparisonSpec Spec(const std::string& problem, const std::string& solvers, int repetitions = 1) {
+  ComparisonSpec spec;
+  spec.problems = {problem};
+  spec.solvers = Solvers(solvers);
+  spec.repetitions = repetitions;
+  return spec;
+}
+
+ComparisonResult Compared(const ComparisonSpec& spec) {
+  ComparisonResult result;
+  std::string error;
+  EXPECT_TRUE(Compare(spec, &result, &error)) << error;
+  return result;
+}
+
+/// A problem file with its data beside it.
+std::string ProblemFile(const std::string& name, int num_points, int control_points) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "batten_compare";
+  std::filesystem::create_directories(folder);
+  std::ofstream data(folder / (name + ".csv"));
+  data << "x,y\n";
+  for (int i = 0; i < num_points; ++i)
+    data << std::cos(0.9 * i) << ',' << std::sin(1.7 * i) << '\n';
+  std::ofstream(folder / (name + ".json"))
+      << "{\"name\": \"" << name << "\", \"data\": \"" << name << ".csv\", \"spline\": "
+      << "{\"degree\": 3, \"closed\": true, \"control_points\": " << control_points
+      << ", \"knots\": \"uniform\"}, \"parameters\": \"uniform\", \"terms\": [\"interpolation\"], "
+      << "\"start\": \"data\"}";
+  return folder / (name + ".json");
+}
+
+/// Says that it has solved the problem; takes 40, 1, 10, 40, ... ms for that.
+class SleepingSolver : public Solver {
+ public:
+  static SolverInfo ClassInfo() {
+    SolverInfo info;
+    info.name = "sleeping";
+    info.native_rule = NativeRule::kDirect;
+    return info;
+  }
+  explicit SleepingSolver(const OptionValues& /*options*/) {}
+  SolverInfo Info() const override { return ClassInfo(); }
+  std::string WhyUnsupported(const Objective& /*objective*/) const override { return ""; }
+  static int num_runs;
+
+ private:
+  Outcome DoMinimize(Objective* /*objective*/, RunContext* context, Eigen::VectorXd* x) override {
+    const int milliseconds[] = {40, 1, 10};
+    context->Iterate(*x);
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds[num_runs++ % 3]));
+    return {StopReason::kSolved, ""};
+  }
+};
+int SleepingSolver::num_runs = 0;
+
+void RegisterSleepingSolver() {
+  if (SolverRegistry::Global().Find("sleeping") == nullptr) {
+    SolverRegistry::Global().Register(MakeSolverEntry<SleepingSolver>());
+  }
+}
+
+TEST(Compare, SaysWhatIsWrongBeforeAnythingRuns) {
+  RegisterSleepingSolver();
+  SleepingSolver::num_runs = 0;
+  ComparisonResult result;
+  std::string error;
+  EXPECT_FALSE(Compare(Spec("rhino", "sleeping,lbgfs"), &result, &error));
+  EXPECT_THAT(error, HasSubstr("unknown solver \"lbgfs\"; did you mean lbfgs"));
+  EXPECT_FALSE(Compare(Spec("rhino", "sleeping,lbfgs/memory=-1"), &result, &error));
+  EXPECT_THAT(error, HasSubstr("memory"));
+  ComparisonSpec spec = Spec("rhino", "sleeping");
+  spec.problems.push_back("rhinozeros");
+  EXPECT_FALSE(Compare(spec, &result, &error));
+  EXPECT_THAT(error, HasSubstr("rhinozeros"));
+  EXPECT_FALSE(Compare(Spec("rhino", "sleeping", 0), &result, &error));
+  EXPECT_EQ(error, "repetitions is 0; allowed: 1 or more");
+  EXPECT_EQ(SleepingSolver::num_runs, 0);
+}
+
+TEST(Compare, FindsAllSolversAtTheDirectAnswer) {
+  const ComparisonResult result =
+      Compared(Spec("rhino", "banded_qr,banded_cholesky,cg,lbfgs/memory=10,lspia", 2));
+  ASSERT_EQ(result.rows.size(), 5u);
+  EXPECT_THAT(result.disagreements, IsEmpty());
+  for (const ComparisonRow& row : result.rows) {
+    EXPECT_EQ(row.problem, "rhino");
+    EXPECT_EQ(row.repetitions, 2);
+    EXPECT_TRUE(row.unique_minimum);
+    EXPECT_LT(row.distance_to_direct, 1e-8) << row.solver;  // what solvers must agree to
+    EXPECT_LE(row.distance_to_direct, row.allowed_distance) << row.solver;
+    // |g| fell by 1e10; the condition is below 100, so the energy's gap fell by nearly 1e20.
+    EXPECT_LT(row.gap, 1e-17) << row.solver;
+    EXPECT_TRUE(row.report.verdict.holds) << row.report.verdict.failure;
+    EXPECT_GT(row.times_cholesky, 0.0);
+    EXPECT_EQ(row.run.trace.size(), row.excess_energies.size());
+    EXPECT_THAT(row.run.iterates, IsEmpty());
+  }
+  EXPECT_EQ(result.rows[1].solver, "banded_cholesky");
+  EXPECT_EQ(result.rows[1].times_cholesky, 1.0);
+  EXPECT_EQ(result.rows[3].solver, "lbfgs/memory=10");
+  // The catalogue's reference, by SciPy.
+  EXPECT_NEAR(result.minimum_energies[0], 4.486845758379909, 1e-12);
+}
+
+TEST(Compare, KeepsTheReasonOfASkippedRow) {
+  const ComparisonResult result = Compared(Spec("rhino", "gim,cg", 3));
+  ASSERT_EQ(result.rows.size(), 2u);
+  EXPECT_EQ(result.rows[0].run.skipped, "gim needs 100 control points for 100 points");
+  EXPECT_TRUE(std::isnan(result.rows[0].gap));
+  EXPECT_TRUE(std::isnan(result.rows[0].seconds));
+  EXPECT_FALSE(result.rows[0].report.audited);
+  EXPECT_GT(result.rows[1].times_cholesky, 0.0);  // run as a reference
+}
+
+TEST(Compare, TakesMediansOfInterleavedRepetitions) {
+  RegisterSleepingSolver();
+  SleepingSolver::num_runs = 0;
+  ComparisonSpec spec = Spec("rhino", "sleeping,banded_cholesky", 3);
+  std::vector<std::string> running;
+  spec.progress = [&running](int done, int total, const std::string& text) {
+    running.push_back(std::to_string(done + 1) + " of " + std::to_string(total) + " " + text);
+  };
+  const ComparisonResult result = Compared(spec);
+  EXPECT_THAT(running, ElementsAre("1 of 6 rhino: sleeping", "2 of 6 rhino: banded_cholesky",
+                                   "3 of 6 rhino: sleeping", "4 of 6 rhino: banded_cholesky",
+                                   "5 of 6 rhino: sleeping", "6 of 6 rhino: banded_cholesky"));
+  EXPECT_EQ(SleepingSolver::num_runs, 3);
+  const ComparisonRow& row = result.rows[0];
+  EXPECT_GE(row.seconds, 0.010);  // of 40, 1 and 10 ms; a sleep can only be longer
+  EXPECT_LT(row.seconds, 0.040);
+  EXPECT_LT(row.setup_seconds, row.solve_seconds);
+  EXPECT_NEAR(row.times_cholesky, row.seconds / result.rows[1].seconds, 1e-9 * row.times_cholesky);
+}
+
+TEST(Compare, MarksAClaimThatFailsItsAudit) {
+  RegisterSleepingSolver();
+  const ComparisonResult result = Compared(Spec("rhino", "sleeping"));
+  EXPECT_TRUE(result.rows[0].report.audited);
+  EXPECT_FALSE(result.rows[0].report.verdict.holds);
+  EXPECT_THAT(result.rows[0].report.verdict.failure, HasSubstr("claims a minimum"));
+  EXPECT_EQ(result.rows[0].gap, 1.0);
+}
+
+TEST(Compare, MeasuresTheExcessAlongTheTrace) {
+  const ComparisonResult result = Compared(Spec("rhino", "lbfgs"));
+  const ComparisonRow& row = result.rows[0];
+  const double minimum = result.minimum_energies[0];
+  for (std::size_t k = 0; k < row.run.trace.size(); ++k) {
+    // E itself is known to some roundings of its size only.
+    EXPECT_NEAR(row.excess_energies[k], row.run.trace[k].energy - minimum,
+                1000 * kEpsilon * row.run.trace[k].energy);
+  }
+  EXPECT_GT(row.excess_energies.back(), 0.0);
+  EXPECT_LT(row.excess_energies.back(), 1e-15);  // far below what a subtraction could show
+}
+
+TEST(Compare, MeasuresTheExcessBySubtractionWhereIteratesTakeTooMuchMemory) {
+  ComparisonSpec spec = Spec("rhino", "lbfgs");
+  spec.run.max_iterations = 1000000;  // 160 variables: 1.28 GB
+  const ComparisonRow row = Compared(spec).rows[0];
+  EXPECT_GT(row.excess_energies.front(), 0.0);
+  EXPECT_TRUE(std::isnan(row.excess_energies.back()));
+}
+
+TEST(Compare, ComparesCurvesWhereTheMinimumIsNotUnique) {
+  const std::string file = ProblemFile("few_points", 6, 10);
+  const ComparisonResult result = Compared(Spec(file, "banded_qr,cg,lbfgs,ceres_lm"));
+  EXPECT_THAT(result.disagreements, IsEmpty());
+  for (const ComparisonRow& row : result.rows) {
+    EXPECT_EQ(row.problem, "few_points");
+    EXPECT_FALSE(row.unique_minimum);
+    EXPECT_LT(row.distance_to_direct, 1e-8) << row.solver;
+  }
+}
+
+TEST(Compare, MeasuresAgainstCholeskyAlsoWithoutCompilation) {
+  ComparisonSpec spec = Spec("rhino", "banded_cholesky,ceres_lbfgs");
+  spec.run.compile = false;
+  const ComparisonResult result = Compared(spec);
+  EXPECT_THAT(result.rows[0].run.skipped, HasSubstr("compil"));
+  EXPECT_GT(result.rows[1].times_cholesky, 0.0);
+  EXPECT_LT(result.rows[1].distance_to_direct, 1e-6);
+}
+
+TEST(Compare, StopsWhenInterrupted) {
+  // In a process of its own: an interrupt is never taken back.
+  const auto compare = [] {
+    RequestInterrupt();
+    ComparisonResult result;
+    std::string error;
+    const bool ok = Compare(Spec("rhino", "cg"), &result, &error);
+    std::_Exit(ok && result.interrupted && result.rows.empty() ? 0 : 1);
+  };
+  EXPECT_EXIT(compare(), testing::ExitedWithCode(0), "");
+}
+
+/// Degree 1, as many control points as points: A is the identity, P* the data.
+std::unique_ptr<Problem> Polyline() {
+  DataSet data;
+  data.name = "polyline";
+  data.points.resize(5, 2);
+  data.points << 0, 0, 3, 1, 4, 4, 8, 2, 6, 0;
+  FitSpec spec;
+  spec.degree = 1;
+  spec.control_points = 5;
+  spec.start = "centroid";
+  std::string error;
+  return MakeFitProblem(data, spec, &error);
+}
+
+TEST(DirectReference, KnowsThePolyline) {
+  const auto problem = Polyline();
+  const DirectReference direct(*problem);
+  ASSERT_TRUE(direct.known());
+  EXPECT_TRUE(direct.unique());
+  const CurveFit& fit = *problem->curve_fit();
+  const Points& data = fit.data().points;
+  const double start = (data.rowwise() - data.colwise().mean()).squaredNorm();  // E at the centroid
+  EXPECT_NEAR(direct.minimum_energy(), 0.0, 100 * std::pow(8 * kEpsilon, 2));
+  EXPECT_NEAR(direct.Gap(problem->start()), 1.0, 8 * kEpsilon);
+  for (const double move : {2.0, 1e-3, 1e-12}) {
+    Points moved = data;
+    moved(2, 0) += move;
+    const Eigen::VectorXd x = fit.Variables(moved);
+    // Coordinates up to 8 are rounded, the difference of neighbours no further.
+    const double rounding = 32 * kEpsilon / move;
+    EXPECT_NEAR(direct.Gap(x), move * move / start, 4 * rounding * move * move / start);
+    EXPECT_NEAR(direct.Excess(x), move * move, 4 * rounding * move * move);
+    EXPECT_NEAR(direct.Distance(x), move / 8, 4 * rounding * move / 8);
+  }
+}
+
+TEST(DirectReference, AllowsADistanceByGradientAndCondition) {
+  const auto problem = Polyline();
+  const DirectReference direct(*problem);
+  RunResult run;
+  run.x = problem->start();
+  run.gradient_norm = 1e-3;
+  // ||P - P*|| <= |g| / (2 lambda), lambda = 1, doubled, over the size 8.
+  EXPECT_NEAR(direct.AllowedDistance(run), 1e-3 / 8, 1e-12);
+  run.gradient_norm = 0.0;
+  EXPECT_LT(direct.AllowedDistance(run), 1e-13);
+  EXPECT_GT(direct.Distance(run.x), direct.AllowedDistance(run));  // a lie would be caught
+}
+
+TEST(DirectReference, IsUnknownWhereTheEnergyIsNotQuadratic) {
+  DataSet data;
+  data.points.resize(8, 1);
+  data.points << 0, 1, 0, 2, 5, 1, 0, 3;
+  FitSpec spec;
+  spec.control_points = 5;
+  spec.terms = {{"interpolation", {{"loss", "huber"}}, nullptr}};
+  std::string error;
+  const auto problem = MakeFitProblem(data, spec, &error);
+  ASSERT_NE(problem, nullptr) << error;
+  const DirectReference direct(*problem);
+  EXPECT_FALSE(direct.known());
+  EXPECT_TRUE(std::isnan(direct.minimum_energy()));
+  EXPECT_TRUE(std::isnan(direct.Gap(problem->start())));
+  EXPECT_TRUE(std::isnan(direct.Distance(problem->start())));
+}
+
+TEST(Median, IsTheMiddleOne) {
+  EXPECT_EQ(Median({3.0}), 3.0);
+  EXPECT_EQ(Median({9.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(Median({9.0, 1.0, 2.0, 4.0}), 3.0);
+  EXPECT_TRUE(std::isnan(Median({})));
+}
+
+}  // namespace
+}  // namespace batten

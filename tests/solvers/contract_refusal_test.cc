@@ -1,0 +1,192 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "problems/test_functions.h"
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+std::unique_ptr<Problem> ClosedFit() {
+  return MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17));
+}
+
+void ExpectOneSentenceWithAWayOut(const std::string& sentence, const std::string& solver) {
+  EXPECT_EQ(sentence.rfind(solver, 0), 0U) << sentence;
+  EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.find(". "), std::string::npos) << sentence;
+  EXPECT_NE(sentence.back(), '.') << sentence;
+  EXPECT_THAT(sentence, ::testing::ContainsRegex("use |needs [0-9]+ |hold |not both")) << sentence;
+}
+
+/// A solver takes a problem and lowers E, or says why it does not.
+void ExpectRunsOrRefuses(const Problem& problem, const std::string& solver, bool compile = true) {
+  const std::string why = WhyUnsupported(problem, solver, compile);
+  if (!why.empty()) {
+    ExpectOneSentenceWithAWayOut(why, solver);
+    return;
+  }
+  SolverTrial trial(problem, solver, {}, compile);
+  EXPECT_TRUE(trial.x.allFinite());
+  EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << trial.outcome.message;
+  Objective objective(&problem, nullptr, {compile});
+  double before = 0.0, after = 0.0;
+  ASSERT_EQ(objective.Energy(objective.start(), &before), Status::kOk);
+  ASSERT_EQ(objective.Energy(trial.x, &after), Status::kOk);
+  EXPECT_LT(after, before);
+}
+
+TEST_P(EverySolver, RunsOrRefusesLosses) {
+  for (const char* terms : {"interpolation/loss=cauchy/loss_scale=0.01",
+                            "interpolation,interpolation/loss=huber/loss_scale=0.02"}) {
+    SCOPED_TRACE(terms);
+    ExpectRunsOrRefuses(*MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17, terms)), name());
+  }
+}
+
+TEST_P(EverySolver, RunsOrRefusesWeightsAndSeveralTerms) {
+  ExpectRunsOrRefuses(*MakeFit(WithoutWeights(MakeNoisyLoop(20, 3, 1)),
+                               MakeSpec(3, true, 20, "interpolation/weight=0.25")),
+                      name());
+  ExpectRunsOrRefuses(*MakeFit(MakeNoisyLoop(20, 1, 1),
+                               MakeSpec(2, false, 20, "interpolation,interpolation/weight=3")),
+                      name());
+}
+
+TEST_P(EverySolver, RunsOrRefusesUncompiledTerms) {
+  ExpectRunsOrRefuses(*ClosedFit(), name(), false);
+  ExpectRunsOrRefuses(*InterpolationProblems()[5].make(), name(), false);
+}
+
+TEST_P(EverySolver, RunsOrRefusesProblemsWithoutACurve) {
+  for (const TestFunction& function : TestFunctions()) {
+    SCOPED_TRACE(function.name);
+    ExpectRunsOrRefuses(*MakeTestProblem(function.name), name());
+  }
+}
+
+TEST_P(EverySolver, RunsOrRefusesConstraintsOnOneCoordinate) {
+  const auto problem = ClosedFit();
+  std::string error;
+  ASSERT_TRUE(problem->SetLinearConstraints({{"y of P_2 is twice that of P_3", {{5, 1.0}, {7, -2.0}}, 0.1}},
+                                            &error))
+      << error;
+  ExpectRunsOrRefuses(*problem, name());
+}
+
+TEST_P(EverySolver, HonoursBoundsOrRefusesThem) {
+  const auto problem = ClosedFit();
+  // The box of the data is about [-0.5, 0.5]^2: some control points want to be outside.
+  const Eigen::VectorXd upper = Eigen::VectorXd::Constant(problem->num_variables(), 0.3);
+  problem->SetBounds(-upper, upper);
+  const std::string why = WhyUnsupported(*problem, name());
+  if (!why.empty()) {
+    ExpectOneSentenceWithAWayOut(why, name());
+    return;
+  }
+  const SolverTrial trial(*problem, name(), {});
+  for (const Eigen::VectorXd& x : trial.context.iterates()) {
+    ASSERT_LE(x.cwiseAbs().maxCoeff(), 0.3);
+  }
+  // At the minimum g pushes against the bounds that hold, and vanishes elsewhere.
+  const DenseFit dense(*problem);
+  const Points g = 2.0 * dense.a.transpose() * (dense.a * dense.PointsOf(trial.x) - dense.q);
+  const double at_first = g.size() * trial.context.gradient_norms().front();
+  int num_held = 0;
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const double x = trial.x[i], slope = g.data()[i];
+    const bool held = std::abs(x) == 0.3;
+    num_held += held ? 1 : 0;
+    if (held) EXPECT_LE(slope * x, 1e-6 * at_first) << i;
+    if (!held) EXPECT_NEAR(slope, 0.0, 1e-6 * at_first) << i;
+  }
+  EXPECT_GT(num_held, 0);
+}
+
+/// sum_j N_j(u) P_j = target, coordinate by coordinate.
+std::vector<LinearConstraint> ThroughPoint(const CurveFit& fit, double u,
+                                           const Eigen::RowVectorXd& target) {
+  std::vector<LinearConstraint> constraints;
+  for (int c = 0; c < fit.dimension(); ++c) {
+    LinearConstraint constraint;
+    constraint.name = "coordinate " + std::to_string(c) + " at " + NumberText(u);
+    for (int j = 0; j < fit.basis().num_control_points(); ++j) {
+      const double coefficient = DenseFit::Coefficient(fit.basis(), u, j);
+      if (coefficient != 0.0) {
+        constraint.coefficients.emplace_back(j * fit.dimension() + c, coefficient);
+      }
+    }
+    constraint.value = target[c];
+    constraints.push_back(constraint);
+  }
+  return constraints;
+}
+
+/// Minimiser of ||A P - Q|| subject to C P = targets, from the conditions of Karush, Kuhn and Tucker.
+Points KktSolution(const DenseFit& dense, const Eigen::MatrixXd& c, const Points& targets) {
+  const auto n = dense.a.cols();
+  const auto k = c.rows();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + k, n + k);
+  matrix.topLeftCorner(n, n) = dense.a.transpose() * dense.a;
+  matrix.topRightCorner(n, k) = c.transpose();
+  matrix.bottomLeftCorner(k, n) = c;
+  Eigen::MatrixXd right(n + k, targets.cols());
+  right << dense.a.transpose() * dense.q, targets;
+  return matrix.fullPivLu().solve(right).topRows(n);
+}
+
+void ExpectHoldsCurveAt(const std::string& solver, int degree, bool closed, int dimension,
+                        const std::vector<double>& parameters) {
+  const auto problem =
+      MakeFit(MakeNoisyLoop(50, dimension, 11), MakeSpec(degree, closed, 16));
+  const CurveFit& fit = *problem->curve_fit();
+  const DenseFit dense(*problem);
+  std::vector<LinearConstraint> constraints;
+  Eigen::MatrixXd c(parameters.size(), dense.a.cols());
+  Points targets(parameters.size(), dimension);
+  std::mt19937 random(20240503);
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    for (int j = 0; j < c.cols(); ++j) {
+      c(static_cast<Eigen::Index>(k), j) = DenseFit::Coefficient(fit.basis(), parameters[k], j);
+    }
+    targets.row(static_cast<Eigen::Index>(k)) = 0.3 * RandomPoints(1, dimension, &random);
+    for (auto& constraint :
+         ThroughPoint(fit, parameters[k], targets.row(static_cast<Eigen::Index>(k)))) {
+      constraints.push_back(std::move(constraint));
+    }
+  }
+  std::string error;
+  ASSERT_TRUE(problem->SetLinearConstraints(constraints, &error)) << error;
+  if (!WhyUnsupported(*problem, solver).empty()) return;
+  const SolverTrial trial(*problem, solver);
+  const Points expected = KktSolution(dense, c, targets);
+  // x - x* = Z (y - y*), and no direction that the constraints leave is flatter than A's flattest.
+  const double z_norm = problem->elimination().z().norm();
+  const double rounding = 256 * kEps * z_norm * dense.condition() * dense.condition();
+  EXPECT_LT((dense.PointsOf(trial.all) - expected).norm(),
+            z_norm * dense.DistanceFor(trial.context.gradient_norms().back()) + rounding)
+      << ToString(trial.outcome.reason) << " " << trial.outcome.message;
+  EXPECT_LT((c * dense.PointsOf(trial.all) - targets).cwiseAbs().maxCoeff(), 16 * kEps);
+}
+
+TEST_P(EverySolver, HoldsTheCurveAtAPointAsTheKktConditionsSay) {
+  const auto problem = ClosedFit();
+  std::string error;
+  ASSERT_TRUE(problem->SetLinearConstraints(
+      ThroughPoint(*problem->curve_fit(), 0.37, Eigen::RowVector2d(0.1, 0.2)), &error))
+      << error;
+  const std::string why = WhyUnsupported(*problem, name());
+  if (!why.empty()) {
+    ExpectOneSentenceWithAWayOut(why, name());
+    return;
+  }
+  ExpectHoldsCurveAt(name(), 3, true, 2, {0.37});
+  ExpectHoldsCurveAt(name(), 3, true, 1, {0.99, 0.02});  // across the joint
+  ExpectHoldsCurveAt(name(), 2, false, 3, {0.0, 0.55});
+  ExpectHoldsCurveAt(name(), 5, false, 2, {0.41, 0.43});
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// Says stop at an iterate or at an evaluation, and notes what is asked of it after that.
+class StoppingContext final : public RunContext, public EvaluationMonitor {
+ public:
+  StoppingContext(int last_iterate, int max_evaluations)
+      : last_iterate_(last_iterate), max_evaluations_(max_evaluations) {}
+
+  bool Allow(Evaluation, const Eigen::VectorXd*) override {
+    if (stopped_) ++asked_after_stop_;
+    if (num_evaluations_ >= max_evaluations_) stopped_ = true;
+    if (!stopped_) ++num_evaluations_;
+    return !stopped_;
+  }
+  Status Iterate(const Eigen::VectorXd& x) override {
+    if (stopped_) ++booked_after_stop_;
+    iterates_.push_back(x);
+    if (static_cast<int>(iterates_.size()) > last_iterate_) stopped_ = true;
+    return stopped_ ? Status::kStop : Status::kOk;
+  }
+  StopReason stop_reason() const override {
+    return stopped_ ? StopReason::kInterrupted : StopReason::kNotRun;
+  }
+  void Note(const std::string&, const std::string&) override {}
+  void OffTheClock(const std::function<void()>& work) override { work(); }
+  std::uint64_t seed() const override { return 1; }
+  int threads() const override { return 1; }
+
+  bool stopped() const { return stopped_; }
+  int asked_after_stop() const { return asked_after_stop_; }
+  int booked_after_stop() const { return booked_after_stop_; }
+  int num_evaluations() const { return num_evaluations_; }
+  const std::vector<Eigen::VectorXd>& iterates() const { return iterates_; }
+
+ private:
+  int last_iterate_;
+  int max_evaluations_;
+  bool stopped_ = false;
+  int num_evaluations_ = 0;
+  int asked_after_stop_ = 0;
+  int booked_after_stop_ = 0;
+  std::vector<Eigen::VectorXd> iterates_;
+};
+
+constexpr int kNever = std::numeric_limits<int>::max();
+
+Outcome MinimizeFrom(const Problem& problem, const std::string& solver, StoppingContext* context,
+                     Eigen::VectorXd* x) {
+  Objective objective(&problem, context);
+  return MakeSolver(solver)->Minimize(&objective, context, x);
+}
+
+/// Calls test(problem) for those of TwoProblems() that the solver takes: one at least.
+template <typename Test>
+void ForSupported(const std::string& solver, Test test) {
+  int num_supported = 0;
+  for (const ContractProblem& row : TwoProblems()) {
+    const auto problem = row.make();
+    if (!WhyUnsupported(*problem, solver).empty()) continue;
+    SCOPED_TRACE(row.name);
+    ++num_supported;
+    test(*problem);
+  }
+  EXPECT_GT(num_supported, 0);
+}
+
+TEST_P(EverySolver, LeavesAtTheIterateThatSaysStop) {
+  ForSupported(name(), [this](const Problem& problem) {
+    for (const int last : {0, 1, 3}) {
+      SCOPED_TRACE(last);
+      StoppingContext context(last, kNever);
+      Eigen::VectorXd x = problem.start();
+      const Outcome outcome = MinimizeFrom(problem, name(), &context, &x);
+      const int num_iterates = static_cast<int>(context.iterates().size());
+      EXPECT_LE(num_iterates, last + 1);
+      ASSERT_GE(num_iterates, 1);
+      // A direct method has ended by itself at its second iterate.
+      if (outcome.reason != StopReason::kInterrupted) {
+        EXPECT_EQ(outcome.reason, StopReason::kSolved);
+        EXPECT_EQ(num_iterates, 2);
+      }
+      EXPECT_EQ(context.asked_after_stop(), 0);
+      EXPECT_EQ(context.booked_after_stop(), 0);
+      EXPECT_TRUE(SameBits(x, context.iterates().back()));
+    }
+  });
+}
+
+TEST_P(EverySolver, BooksItsStartFirst) {
+  ForSupported(name(), [this](const Problem& problem) {
+    StoppingContext context(0, kNever);
+    Eigen::VectorXd x = problem.start();
+    MinimizeFrom(problem, name(), &context, &x);
+    EXPECT_TRUE(SameBits(context.iterates().front(), problem.start()));
+    EXPECT_TRUE(SameBits(x, problem.start()));
+  });
+}
+
+TEST_P(EverySolver, LeavesAtTheEvaluationThatIsRefused) {
+  ForSupported(name(), [this](const Problem& problem) {
+    StoppingContext all(20, kNever);
+    Eigen::VectorXd x = problem.start();
+    MinimizeFrom(problem, name(), &all, &x);
+    for (int allowed = 0; allowed < all.num_evaluations(); ++allowed) {
+      SCOPED_TRACE(allowed);
+      StoppingContext context(kNever, allowed);
+      x = problem.start();
+      const Outcome outcome = MinimizeFrom(problem, name(), &context, &x);
+      ASSERT_TRUE(context.stopped());
+      EXPECT_EQ(outcome.reason, StopReason::kInterrupted) << outcome.message;
+      EXPECT_EQ(context.asked_after_stop(), 0);
+      // Where a library keeps its last point to itself, it is booked on the way out.
+      EXPECT_LE(context.booked_after_stop(), 1);
+      const bool booked = !context.iterates().empty();
+      EXPECT_TRUE(SameBits(x, booked ? context.iterates().back() : problem.start()));
+    }
+  });
+}
+
+TEST_P(EverySolver, RefusesAStartThatIsNotFinite) {
+  ForSupported(name(), [this](const Problem& problem) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      StoppingContext context(kNever, kNever);
+      Eigen::VectorXd x = problem.start();
+      x[3] = bad;
+      const Outcome outcome = MinimizeFrom(problem, name(), &context, &x);
+      EXPECT_EQ(outcome.reason, StopReason::kNumericalFailure);
+      EXPECT_FALSE(outcome.message.empty());
+      EXPECT_EQ(context.num_evaluations(), 0);
+      EXPECT_TRUE(context.iterates().empty());
+    }
+  });
+}
+
+TEST_P(EverySolver, SolvesOrFailsFromAStartWhoseSquareOverflows) {
+  ForSupported(name(), [this](const Problem& problem) {
+    TestContext context(problem);
+    Objective objective(&problem, &context);
+    Eigen::VectorXd x = Eigen::VectorXd::Constant(problem.num_variables(), 1e200);
+    const Outcome outcome = MakeSolver(name())->Minimize(&objective, &context, &x);
+    if (outcome.reason == StopReason::kSolved) {
+      EXPECT_TRUE(x.allFinite());
+    } else {
+      EXPECT_EQ(outcome.reason, StopReason::kNumericalFailure) << ToString(outcome.reason);
+    }
+  });
+}
+
+TEST_P(EverySolver, StaysAtTheMinimum) {
+  ForSupported(name(), [this](const Problem& problem) {
+    const DenseFit dense(problem);
+    // Judged: the first iterate already is at the rounding floor.
+    TestContext judge(problem);
+    Objective judged(&problem, &judge);
+    Eigen::VectorXd x = dense.solution_x();
+    const Outcome outcome = MakeSolver(name())->Minimize(&judged, &judge, &x);
+    EXPECT_TRUE(IsSuccess(outcome.reason)) << ToString(outcome.reason);
+    EXPECT_LE(judge.iterates().size(), 2U);
+    // Nobody stops it: it may end by itself or go on, but not go away. One rounding of each number
+    // moves A P by this much.
+    StoppingContext context(200, kNever);
+    x = dense.solution_x();
+    MinimizeFrom(problem, name(), &context, &x);
+    const double rounding = 64 * kEps * dense.a.norm() * dense.condition();
+    for (const Eigen::VectorXd& iterate : context.iterates()) {
+      ASSERT_LT(std::sqrt(dense.Gap(iterate)), rounding);
+    }
+  });
+}
+
+TEST_P(EverySolver, TakesAGradientThatIsExactlyZero) {
+  DataSet data;
+  data.points = Points::Constant(12, 2, 3.5);
+  FitSpec spec = MakeSpec(3, false, 12);
+  spec.parameters = Parameterization::kUniform;
+  const auto problem = MakeFit(data, spec);
+  ASSERT_EQ(WhyUnsupported(*problem, name()), "");
+  StoppingContext context(50, kNever);
+  Eigen::VectorXd x = problem->start();
+  ASSERT_TRUE(x.isZero(0.0));
+  const Outcome outcome = MinimizeFrom(*problem, name(), &context, &x);
+  EXPECT_NE(outcome.reason, StopReason::kNumericalFailure) << outcome.message;
+  EXPECT_TRUE(x.isZero(0.0));
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,150 @@
+#include "solvers/stepper.h"
+
+#include <gtest/gtest.h>
+
+#include "problems/test_functions.h"
+#include "tests/solvers/circulant_fit.h"
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+/// One stepper on its own objective, stepped by hand.
+class SteppedRun {
+ public:
+  SteppedRun(const Problem& problem, const std::string& name, const Eigen::VectorXd& x)
+      : context_(problem, {1000000, -1.0, false}), objective_(&problem, &context_),
+        solver_(MakeSolver(name)), x_(x) {
+    EXPECT_EQ(solver_->WhyUnsupported(objective_), "");
+    EXPECT_FALSE(stepper()->Start(&objective_, &context_, &x_).has_value());
+  }
+  Stepper* stepper() { return dynamic_cast<Stepper*>(solver_.get()); }
+  const Eigen::VectorXd& x() const { return x_; }
+  /// False once the run has ended.
+  bool Step() { return !stepper()->Step(&x_).has_value(); }
+
+ private:
+  TestContext context_;
+  Objective objective_;
+  std::unique_ptr<Solver> solver_;
+  Eigen::VectorXd x_;
+};
+
+std::vector<std::string> StepperNames() {
+  std::vector<std::string> names;
+  for (const std::string& name : SolverRegistry::Global().Names()) {
+    if (SolverRegistry::Global().Find(name)->wraps_solver) continue;
+    const std::unique_ptr<Solver> solver = MakeSolver(name);
+    if (dynamic_cast<Stepper*>(solver.get()) != nullptr) names.push_back(name);
+  }
+  return names;
+}
+
+class EveryStepper : public ::testing::TestWithParam<std::string> {};
+
+/// A run of `total` steps, and one that is left after `before` and taken up by another object.
+void ExpectResumes(const Problem& problem, const std::string& name, int before, int total) {
+  SCOPED_TRACE(problem.name() + " left after " + std::to_string(before));
+  SteppedRun whole(problem, name, problem.start());
+  SteppedRun first(problem, name, problem.start());
+  for (int k = 0; k < before; ++k) {
+    ASSERT_TRUE(whole.Step());
+    ASSERT_TRUE(first.Step());
+  }
+  SteppedRun second(problem, name, first.x());
+  second.stepper()->Restore(first.stepper()->State());
+  for (int k = before; k < total; ++k) {
+    const bool goes_on = whole.Step();
+    ASSERT_EQ(second.Step(), goes_on);
+    ASSERT_TRUE(SameBits(whole.x(), second.x())) << k;
+    if (!goes_on) return;
+  }
+}
+
+TEST_P(EveryStepper, GoesOnFromItsStateAsIfItHadNotBeenLeft) {
+  const auto problem = MakeCirculantFit(30, 1);
+  const auto clamped = InterpolationProblems()[5].make();
+  for (const int before : {0, 1, 4, 17}) {
+    ExpectResumes(*problem, GetParam(), before, 40);
+    ExpectResumes(*clamped, GetParam(), before, 40);
+  }
+}
+
+TEST_P(EveryStepper, StepsAsInItsOwnLoop) {
+  const auto problem = MakeCirculantFit(30, 1);
+  TestContextOptions options;
+  options.max_iterations = 12;
+  options.gradient_tolerance = -1.0;
+  options.stop_at_rounding_floor = false;
+  const SolverTrial loop(*problem, GetParam(), options);
+  SteppedRun stepped(*problem, GetParam(), problem->start());
+  for (const Eigen::VectorXd& x : loop.context.iterates()) {
+    ASSERT_TRUE(SameBits(stepped.x(), x));
+    stepped.Step();
+  }
+}
+
+TEST_P(EveryStepper, RunsInLockstepWithAnyOther) {
+  const auto problem = MakeCirculantFit(30, 1);
+  for (const std::string& other : StepperNames()) {
+    SCOPED_TRACE(other);
+    SteppedRun alone(*problem, GetParam(), problem->start());
+    SteppedRun one(*problem, GetParam(), problem->start());
+    SteppedRun two(*problem, other, problem->start());
+    for (int k = 0; k < 15; ++k) {
+      const bool goes_on = alone.Step();
+      ASSERT_EQ(one.Step(), goes_on);
+      two.Step();
+      ASSERT_TRUE(SameBits(alone.x(), one.x())) << k;
+      if (!goes_on) break;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryStepper, ::testing::ValuesIn(StepperNames()),
+                         [](const auto& stepper) { return stepper.param; });
+
+TEST(Stepper, LbfgsGoesOnFromItsStateOnCurvedObjectives) {
+  for (const char* name : {"rosenbrock", "wood", "trigonometric"}) {
+    for (const int before : {0, 1, 3, 15}) {
+      ExpectResumes(*MakeTestProblem(name), "lbfgs/memory=5", before, 25);
+    }
+  }
+}
+
+TEST(Stepper, AMapLeavesItsArgumentAndIsTheStep) {
+  const auto problem = MakeCirculantFit(30, 1);
+  for (const std::string& name : StepperNames()) {
+    const std::unique_ptr<Solver> solver = MakeSolver(name);
+    auto* map = dynamic_cast<FixedPoint*>(solver.get());
+    if (map == nullptr) continue;
+    TestContext context(*problem);
+    Objective objective(problem.get(), &context);
+    Eigen::VectorXd x = problem->start(), image;
+    ASSERT_FALSE(map->Start(&objective, &context, &x).has_value());
+    ASSERT_EQ(map->Map(x, &image), Status::kOk);
+    EXPECT_TRUE(SameBits(x, problem->start()));
+    ASSERT_FALSE(map->Step(&x).has_value());
+    EXPECT_TRUE(SameBits(x, image)) << name;
+  }
+}
+
+TEST(Stepper, ARefusedStepLeavesThePointAlone) {
+  const auto problem = MakeCirculantFit(30, 1);
+  for (const std::string& name : StepperNames()) {
+    TestContextOptions options;
+    options.max_energies = 0;
+    TestContext context(*problem, options);
+    Objective objective(problem.get(), &context, {false});
+    const std::unique_ptr<Solver> solver = MakeSolver(name);
+    if (!solver->WhyUnsupported(objective).empty()) continue;
+    Eigen::VectorXd x = problem->start();
+    const auto outcome = dynamic_cast<Stepper*>(solver.get())->Start(&objective, &context, &x);
+    ASSERT_TRUE(outcome.has_value());
+    EXPECT_EQ(outcome->reason, StopReason::kTimeLimit);
+    EXPECT_TRUE(SameBits(x, problem->start()));
+  }
+}
+
+}  // namespace
+}  // namespace batten

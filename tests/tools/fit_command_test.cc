@@ -1,0 +1,197 @@
+// The command `fit` on good input, run as a process.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/tools/program.h"
+
+namespace batten {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kRhino = DataFile("animals/rhino_100.csv");
+// SciPy 1.10: BSpline.design_matrix, linalg.lstsq; as in problems/catalogue/rhino.json.
+constexpr double kRhinoEnergy = 4.486845758379909;
+constexpr double kEnergyTolerance = 1e-9 * kRhinoEnergy;
+
+/// `fit` with --out, which must succeed; its fit.json.
+json Fit(std::vector<std::string> arguments, const std::string& input = "") {
+  const TemporaryFolder folder;
+  arguments.insert(arguments.begin(), "fit");
+  arguments.push_back("--out=" + (folder / "fit.json"));
+  const Ended ended = RunBatten(std::move(arguments), input);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  return json::parse(ReadFile(folder / "fit.json"), nullptr, false);
+}
+
+TEST(FitCommand, FitsTheRhinocerosAndWritesAllFilesItIsAskedFor) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"fit", kRhino, "--closed", "--control_points=80", "--solver=lbfgs",
+                                 "--out=" + (folder / "fit.json"), "--trace", folder / "trace.csv",
+                                 "--iterates=" + (folder / "iterates.jsonl"),
+                                 "--figure=" + (folder / "rhino.svg")});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  EXPECT_THAT(ended.out,
+              HasSubstr("100 points in 2-D, closed curve of degree 3, 80 control points"));
+  EXPECT_THAT(ended.out, HasSubstr("gradient_small"));
+  EXPECT_THAT(ended.out, HasSubstr("verified"));
+  EXPECT_THAT(folder.Names(), ::testing::ElementsAre("fit.json", "iterates.jsonl", "rhino.dat",
+                                                     "rhino.gp", "rhino.svg", "trace.csv"));
+
+  const json fit = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_EQ(fit["format"], "batten.fit/1");
+  EXPECT_EQ(fit["spline"]["degree"], 3);
+  EXPECT_EQ(fit["spline"]["periodic"], true);
+  EXPECT_EQ(fit["spline"]["control_points"].size(), 80u);
+  EXPECT_EQ(fit["spline"]["knots"].size(), 80u + 2 * 3 + 1);
+  EXPECT_EQ(fit["parameters"].size(), 100u);
+  EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
+  EXPECT_EQ(fit["audit"]["verified"], true);
+  EXPECT_EQ(fit["stop"], "gradient_small");
+
+  const size_t num_rows = fit["iterations"].get<size_t>() + 1;  // the start is row 0
+  const auto trace = Lines(ReadFile(folder / "trace.csv"));
+  ASSERT_EQ(trace.size(), num_rows + 1);
+  EXPECT_THAT(trace[0], HasSubstr("iteration,energy_calls,gradient_calls"));
+  const auto iterates = Lines(ReadFile(folder / "iterates.jsonl"));
+  ASSERT_EQ(iterates.size(), num_rows);
+  EXPECT_EQ(json::parse(iterates.back())["control_points"], fit["spline"]["control_points"]);
+  EXPECT_THAT(ReadFile(folder / "rhino.svg"), HasSubstr("</svg>"));
+}
+
+TEST(FitCommand, ReachesTheMinimumWithEverySolverOfTheList) {
+  // As many control points as points, so that gim applies too: the curve passes through all.
+  for (const json& solver : RunBatten({"list", "solvers", "--json"}).Json()["solvers"]) {
+    if (solver["wraps_solver"].get<bool>()) continue;
+    const std::string name = solver["name"];
+    const json fit = Fit({"--problem=rhino_interpolation", "--solver=" + name});
+    EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-6) << name;
+    EXPECT_EQ(fit["audit"]["verified"], true) << name;
+  }
+}
+
+TEST(FitCommand, ReadsPointsFromStandardInput) {
+  const json fit = Fit({"-", "--closed", "--control_points=80"}, ReadFile(kRhino));
+  EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
+}
+
+TEST(FitCommand, ReproducesAStraightLine) {
+  const json fit = Fit({"-", "--control_points=5", "--parameters=chord_length"},
+                       "x,y,z\n0,0,0\n1,2,3\n2,4,6\n4,8,12\n5,10,15\n7,14,21\n");
+  EXPECT_EQ(fit["spline"]["dimension"], 3);
+  EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-8);
+}
+
+TEST(FitCommand, FitsOneCoordinate) {
+  const json fit = Fit({"-", "--control_points=4"}, "0\n1\n4\n9\n16\n25\n");
+  EXPECT_EQ(fit["spline"]["dimension"], 1);
+  EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-7);  // a parabola is a cubic
+}
+
+TEST(FitCommand, TakesKnotsAsAListOrFromAFile) {
+  const TemporaryFolder folder;
+  const std::string points = folder.Write("points.csv", "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n");
+  const std::string knots = folder.Write("knots.txt", "# clamped\n0 0 0\n0.5 # middle\n1, 1 1\n");
+  const json uniform = Fit({points, "--degree=2", "--control_points=4"});
+  const json list = Fit({points, "--degree=2", "--knots=0,0,0,.5,1,1,1"});
+  const json file = Fit({points, "--degree=2", "--knots=" + knots});
+  EXPECT_EQ(list["spline"], uniform["spline"]);
+  EXPECT_EQ(file["spline"], uniform["spline"]);
+}
+
+TEST(FitCommand, TakesGivenParametersAndTheirDomain) {
+  const std::string points = "t,x,y\n1,0,0\n2,1,3\n3,2,-1\n4,3,4\n";
+  const json range = Fit({"-", "--parameters=given", "--control_points=4"}, points);
+  EXPECT_EQ(range["parameters"], json({1.0, 2.0, 3.0, 4.0}));
+  EXPECT_EQ(range["spline"]["knots"], json({1.0, 1.0, 1.0, 1.0, 4.0, 4.0, 4.0, 4.0}));
+  const json wider =
+      Fit({"-", "--parameters=given", "--control_points=4", "--domain", "-1,6"}, points);
+  EXPECT_EQ(wider["spline"]["knots"][0], -1.0);
+  EXPECT_EQ(wider["spline"]["knots"][7], 6.0);
+}
+
+TEST(FitCommand, FollowsKnotAndEndRules) {
+  const std::string points = "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n7,1\n";
+  const std::vector<std::string> common = {"-", "--degree=2", "--control_points=4"};
+  const auto knots = [&](const std::string& flag) {
+    std::vector<std::string> arguments = common;
+    arguments.push_back(flag);
+    return Fit(arguments, points)["spline"]["knots"];
+  };
+  EXPECT_EQ(knots("--knots=uniform"), json({0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0}));
+  EXPECT_EQ(knots("--ends=floating"), json({-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0}));
+  // NURBS Book 9.68, 9.69: d = 7 / 2, i = 3, alpha = 1/2: half way between t_2 and t_3.
+  EXPECT_NEAR(knots("--knots=averaged")[3].get<double>(), 2.5 / 6.0, 1e-15);
+}
+
+TEST(FitCommand, LetsFlagsOverrideAProblemOfTheCatalogue) {
+  const json plain = Fit({"--problem=rhino"});
+  EXPECT_NEAR(plain["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
+  const json smaller = Fit({"--problem=rhino", "--control_points=40", "--degree=2"});
+  EXPECT_EQ(smaller["spline"]["control_points"].size(), 40u);
+  EXPECT_EQ(smaller["spline"]["degree"], 2);
+  EXPECT_EQ(smaller["spline"]["periodic"], true);
+  const json open = Fit({"--problem=rhino", "--noclosed"});
+  EXPECT_EQ(open["spline"]["periodic"], false);
+}
+
+TEST(FitCommand, GivesTheSameAnswerWithoutCompilation) {
+  const json fit = Fit({"--problem=rhino", "--nocompile", "--gradient_tolerance=1e-8"});
+  EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
+}
+
+TEST(FitCommand, TakesTermsAndSolversWithOptions) {
+  const json fit = Fit({"--problem=rhino", "--terms=interpolation/weight=2",
+                        "--solver=lbfgs/memory=5/wolfe=strong"});
+  EXPECT_NEAR(fit["energy"].get<double>(), 2 * kRhinoEnergy, 2 * kEnergyTolerance);
+  EXPECT_EQ(fit["options"]["memory"], "5");
+  EXPECT_EQ(fit["options"]["wolfe"], "strong");
+}
+
+TEST(FitCommand, RunsInNativeMode) {
+  const json fit = Fit({"--problem=rhino", "--mode=native", "--solver=lspia"});
+  EXPECT_EQ(fit["mode"], "native");
+  EXPECT_EQ(fit["stop"], "step_small");
+}
+
+TEST(FitCommand, CountsTheEndOfALineSearchNearTheFloorAsReached) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"fit", "--problem=rhino", "--solver=ceres_lbfgs",
+                                 "--gradient_tolerance=0", "--out=" + (folder / "fit.json")});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const json fit = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
+}
+
+TEST(FitCommand, ExitsWithOneWhereTheLimitCameFirstAndStillWritesTheFit) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"fit", "--problem=rhino", "--solver=lspia", "--max_iterations=3",
+                                 "--out=" + (folder / "fit.json")});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_EQ(Lines(ended.err).size(), 1u);
+  EXPECT_THAT(ended.err, HasSubstr("iteration_limit"));
+  const json fit = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_EQ(fit["stop"], "iteration_limit");
+  EXPECT_EQ(fit["iterations"], 3);
+}
+
+TEST(FitCommand, RefusesASolverThatDoesNotApply) {
+  ExpectRefused(RunBatten({"fit", "--problem=rhino", "--solver=gim"}),
+                {"--solver: ", "gim needs 100 control points for 100 points"});
+}
+
+TEST(FitCommand, PrintsNoNumberThatIsNone) {
+  // All points on the centroid: E(start) = 0, every ratio to it is undefined.
+  const Ended ended = RunBatten({"fit", "-", "--control_points=4"}, "x,y\n1,1\n1,1\n1,1\n");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, Not(HasSubstr("nan")));
+  EXPECT_THAT(ended.out, Not(HasSubstr("inf ")));
+}
+
+}  // namespace
+}  // namespace batten
