@@ -205,8 +205,8 @@ def render(measured, options):
     lines = ['# Benchmark results', '',
              'Written by `benchmarks/run.sh`; `docs/benchmarks.md` says what the rows mean.', '',
              *machine(), '',
-             f'Medians; rounds: {len(measured.generic)}. Cubic, 2-D, 1e6 points, 1e4 control points '
-             'unless a row says otherwise. One thread, CPU time.', '']
+             f'Medians; rounds: {len(measured.generic)}. Cubic, 2-D, 1e6 points, 1e4 control '
+             'points unless a row says otherwise. One thread, CPU time.', '']
     if options.quick:
         lines += ['**A trial (`--quick`): not for the record.**', '']
     if measured.busy > BUSY:

@@ -33,7 +33,9 @@ for preset in bench native; do
   log=$build_dir.log
   mkdir -p "$build_root"
   echo "Building the benchmarks, preset $preset" >&2
-  if ! { cmake --preset "$preset" -B "$build_dir" -DBATTEN_BUILD_TESTS=OFF &&
+  # What compilers warn of is judged elsewhere; GCC 12 does so in its own AVX-512 headers.
+  if ! { cmake --preset "$preset" -B "$build_dir" -DBATTEN_BUILD_TESTS=OFF \
+    -DBATTEN_WARNINGS_AS_ERRORS=OFF &&
     cmake --build "$build_dir" \
       --target evaluation_benchmark direct_benchmark iteration_benchmark; } >"$log" 2>&1; then
     tail -n 40 "$log" >&2

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "cost_functions/options.h"
 #include "experiments/figures.h"

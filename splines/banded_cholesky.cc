@@ -278,12 +278,14 @@ void BandedCholesky::SolveBackward(int begin, int end, double* x, int dimension)
 
 template <int kWidth, int kDimension>
 void BandedCholesky::SolveBand(double* x, int dimension) const {
-  SolveForward<kWidth, kDimension, true>(0, num_bordered_, x, dimension);
+  // Open matrices have no room for a border in x, even an empty one.
+  const bool bordered = num_bordered_ > 0;
+  if (bordered) SolveForward<kWidth, kDimension, true>(0, num_bordered_, x, dimension);
   SolveForward<kWidth, kDimension, false>(num_bordered_, num_swept_, x, dimension);
   SolveDense(n_ - num_swept_, dense_.data(), dimension,
              x + static_cast<std::size_t>(num_swept_) * dimension);
   SolveBackward<kWidth, kDimension, false>(num_bordered_, num_swept_, x, dimension);
-  SolveBackward<kWidth, kDimension, true>(0, num_bordered_, x, dimension);
+  if (bordered) SolveBackward<kWidth, kDimension, true>(0, num_bordered_, x, dimension);
 }
 
 void BandedCholesky::Solve(double* x, int dimension) const {

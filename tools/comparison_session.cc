@@ -183,16 +183,17 @@ bool ComparisonSession::WriteTables(std::string* error) const {
 }
 
 std::string ComparisonSession::FileList() const {
-  std::vector<std::string> files = TableFiles();
-  files.push_back(InFolder("cells.jsonl"));
+  std::string text = "\nFiles:\n";
+  for (const std::string& file : TableFiles()) text += "  " + file + "\n";
+  text += "  " + InFolder("cells.jsonl") + "\n";
+  std::error_code ignored;
   for (const Contest& contest : contests_) {
     if (!files_.figures) break;
-    for (const std::string& file : FigureFiles(contest.entry.name)) files.push_back(file);
-  }
-  std::string text = "\nFiles:\n";
-  std::error_code ignored;
-  for (const std::string& file : files) {
-    if (std::filesystem::exists(file, ignored)) text += "  " + file + "\n";
+    for (const std::string& file : FigureFiles(contest.entry.name)) {
+      const bool is_picture = std::filesystem::path(file).extension() == ".svg";
+      if (!is_picture || !std::filesystem::exists(file, ignored)) continue;
+      text += "  " + file + "  (.gp and .dat beside it)\n";
+    }
   }
   return text;
 }

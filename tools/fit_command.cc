@@ -8,6 +8,7 @@
 #include "experiments/figures.h"
 #include "experiments/fit_report.h"
 #include "experiments/run.h"
+#include "experiments/short_number.h"
 #include "experiments/trace.h"
 #include "tools/command.h"
 #include "tools/fit_request.h"
@@ -45,14 +46,16 @@ double Fraction(const RunSpec& spec, const TraceRow& row, double start_gradient_
 bool RunWithProgress(const Problem& problem, const NameSpec& solver, RunSpec spec,
                      RunResult* result, std::string* error) {
   const InterruptibleRun interruptible;
+  constexpr int kDigits = 4;
   Progress progress(FLAGS_quiet);
   double start_gradient_norm = 0.0;
   spec.progress = [&](const TraceRow& row) {
     if (row.iteration == 0) start_gradient_norm = row.gradient_norm;
     if (!progress.IsDue()) return;
     progress.Show(Fraction(spec, row, start_gradient_norm),
-                  "iteration " + std::to_string(row.iteration) + ", E " + NumberText(row.energy) +
-                      ", |g| " + NumberText(row.gradient_norm));
+                  "iteration " + std::to_string(row.iteration) + ", E " +
+                      ShortNumber(row.energy, kDigits) + ", |g| " +
+                      ShortNumber(row.gradient_norm, kDigits));
   };
   return Run(problem, solver, spec, result, error);
 }
@@ -169,6 +172,9 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
   if (!CheckOutputs(Outputs(), request.input_files, error)) return kBadInput;
   RunSpec spec = RunSpecFromFlags();
   spec.keep_iterates = WasGiven("iterates");
+  // Without its file the trace only tells the observed rate, which is not worth all memory.
+  constexpr int kMostRows = 1'000'000;
+  spec.keep_trace = WasGiven("trace") || spec.max_iterations <= kMostRows;
   return FitAndWrite(request, solvers.front(), spec, output);
 }
 

@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "experiments/short_number.h"
 
 namespace batten {
 namespace {
 
 /// Six digits for the eye; files have them all.
 std::string Short(double value) {
-  if (!std::isfinite(value)) return "unknown";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
+  constexpr int kDigits = 6;
+  return std::isfinite(value) ? ShortNumber(value, kDigits) : "unknown";
 }
 
 std::string Line(const std::string& name, const std::string& text) {
@@ -119,7 +118,8 @@ std::string NotReachedMessage(const RunResult& run, const RunSpec& spec) {
                      " did not reach what was asked: " + ToString(run.outcome.reason) + " after " +
                      Plural(run.iterations, "iteration") + " at |g| = " + Short(run.gradient_norm);
   if (spec.mode == Mode::kRace) {
-    text += "; asked: |g| <= " + Short(spec.gradient_tolerance * run.start_gradient_norm);
+    const double asked = spec.gradient_tolerance * run.start_gradient_norm;
+    text += "; asked: at most " + Short(std::max(asked, run.gradient_floor));
   }
   return text;
 }

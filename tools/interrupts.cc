@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <string>
 #include <thread>
 
 #include "experiments/atomic_file.h"
@@ -35,6 +36,11 @@ void WaitForInterrupts() {
     if (count <= 0) return;
   }
   RemovePendingTemporaryFiles();
+  // Where a bar of progress may stand, its line is cleared first.
+  const std::string message =
+      std::string(isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") + "interrupted\n";
+  const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
+  static_cast<void>(ignored);
   _exit(kInterruptedStatus);
 }
 

@@ -102,10 +102,10 @@ Json ProblemsJson(const std::vector<CatalogueEntry>& entries) {
 
 constexpr size_t kIndent = 18;
 
-std::string Entry(const std::string& name, const std::string& text) {
+std::string Entry(const std::string& name, const std::string& text, size_t indent = kIndent) {
   std::string first = "  " + name + " ";
-  first.resize(std::max(first.size(), kIndent), ' ');
-  return first + Wrapped(text, kIndent, first.size());
+  first.resize(std::max(first.size(), indent), ' ');
+  return first + Wrapped(text, indent, first.size());
 }
 
 std::string OptionsText(const std::vector<OptionInfo>& options) {
@@ -142,11 +142,15 @@ std::string TermsText() {
 
 std::string ProblemsText(const std::vector<CatalogueEntry>& entries) {
   std::string text = "Problems:\n";
+  size_t indent = kIndent;
+  for (const CatalogueEntry& entry : entries) indent = std::max(indent, entry.name.size() + 4);
   for (const CatalogueEntry& entry : entries) {
     const FitSpec& spec = entry.spec;
-    text += Entry(entry.name, entry.summary + "; " + (spec.closed ? "closed" : "open") +
-                                  ", degree " + std::to_string(spec.degree) + ", " +
-                                  std::to_string(spec.control_points) + " control points");
+    text += Entry(entry.name,
+                  entry.summary + "; " + (spec.closed ? "closed" : "open") + ", degree " +
+                      std::to_string(spec.degree) + ", " + std::to_string(spec.control_points) +
+                      " control points",
+                  indent);
   }
   return text;
 }

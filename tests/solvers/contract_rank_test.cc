@@ -74,7 +74,9 @@ TEST_P(NearestToTheStart, AmongTheMinimisersOfADeficientFit) {
     EXPECT_LT((trial.x - dense.solution_x()).norm(),
               dense.DistanceFor(trial.context.gradient_norms().back()) + rounding)
         << trial.outcome.message;
-    if (direct) EXPECT_THAT(trial.outcome.message, HasSubstr("nearest to the start"));
+    if (direct) {
+      EXPECT_THAT(trial.outcome.message, HasSubstr("nearest to the start"));
+    }
   }
 }
 

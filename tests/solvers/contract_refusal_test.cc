@@ -99,8 +99,11 @@ TEST_P(EverySolver, HonoursBoundsOrRefusesThem) {
     const double x = trial.x[i], slope = g.data()[i];
     const bool held = std::abs(x) == 0.3;
     num_held += held ? 1 : 0;
-    if (held) EXPECT_LE(slope * x, 1e-6 * at_first) << i;
-    if (!held) EXPECT_NEAR(slope, 0.0, 1e-6 * at_first) << i;
+    if (held) {
+      EXPECT_LE(slope * x, 1e-6 * at_first) << i;
+    } else {
+      EXPECT_NEAR(slope, 0.0, 1e-6 * at_first) << i;
+    }
   }
   EXPECT_GT(num_held, 0);
 }

@@ -87,7 +87,9 @@ TEST(SearchWolfe, FindsAStepThatMeetsTheConditionsFromAnyFirstStep) {
           EXPECT_LE(line.num_evaluations, options.max_evaluations);
           EXPECT_LE(found.change, options.sufficient_decrease * found.step * slope);
           EXPECT_GE(found.slope, c2 * slope);
-          if (strong) EXPECT_LE(found.slope, -c2 * slope);
+          if (strong) {
+            EXPECT_LE(found.slope, -c2 * slope);
+          }
           // What is found is what was evaluated.
           EXPECT_EQ(found.change, row.value(found.step) - row.value(0.0));
           EXPECT_EQ(found.slope, row.slope(found.step));

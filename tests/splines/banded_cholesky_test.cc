@@ -15,9 +15,7 @@ double OneNorm(const Eigen::MatrixXd& matrix) {
 
 /// max |factor^-1 b - x| where b = N x.
 double ErrorOfSolution(const NormalBand& band, const BandedCholesky& factor, const Points& x) {
-  Points solution(x.rows(), x.cols());
-  const Eigen::MatrixXd dense = band.ToDense();
-  solution = dense * x;
+  Points solution = band.ToDense() * x;
   factor.Solve(solution.data(), static_cast<int>(x.cols()));
   return (solution - x).cwiseAbs().maxCoeff();
 }

@@ -140,6 +140,12 @@ TEST_F(CompareCommand, KeepsFinishedProblemsWhenInterruptedAndGoesOn) {
   for (const auto& entry : std::filesystem::directory_iterator(out_)) {
     EXPECT_NE(entry.path().extension(), ".tmp");
   }
+  // Times differ from run to run: the same one is that of the finished problem.
+  ASSERT_EQ(RunBatten({"compare", "--problems=rhino", "--solvers=lspia", "--gradient_tolerance=0",
+                       "--max_iterations=1000000", "--repetitions=1", "--out=" + out_, "--resume"})
+                .status,
+            0);
+  EXPECT_EQ(json::parse(ReadFile(out_ + "/table.json"))["rows"][0]["seconds"], rows[0]["seconds"]);
 }
 
 TEST_F(CompareCommand, TakesProblemFiles) {

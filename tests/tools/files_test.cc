@@ -13,14 +13,14 @@ using ::testing::IsEmpty;
 constexpr char kPoints[] = "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n";
 
 /// A fit that no stop rule but the time limit ends soon: of degree 9 through as many points as
-/// control points, by the slowest method.
+/// control points, by the slowest method in small steps.
 std::vector<std::string> LongFit(const std::string& points) {
   return {"fit",
           points,
           "--closed",
           "--degree=9",
           "--control_points=3697",
-          "--solver=lspia",
+          "--solver=lspia/relaxation=0.01",
           "--gradient_tolerance=0",
           "--max_iterations=1000000000",
           "--max_seconds=60",
@@ -161,8 +161,8 @@ TEST_P(Interrupted, ReadingOfStandardInputEndsAtOnce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupted, ::testing::Values(SIGINT, SIGTERM),
-                         [](const auto& info) {
-                           return std::string(info.param == SIGINT ? "Interrupt" : "Terminate");
+                         [](const auto& test) {
+                           return std::string(test.param == SIGINT ? "Interrupt" : "Terminate");
                          });
 
 }  // namespace

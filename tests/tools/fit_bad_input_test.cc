@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadData{"TextInANumber", "x,y\n0,0\n1,2\n3,4m\n", ":4:2:", "\"4m\""},
                       BadData{"TooLargeANumber", "x,y\n0,0\n1e308,1\n2,0\n", ":3:1:", "1e308"},
                       BadData{"Binary", "\x89PNG\r\n\x1a\n\x01\x02", ":1:", "\\x89PNG"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& bad) { return std::string(bad.param.name); });
 
 TEST(FitCommand, RefusesOnePoint) {
   ExpectRefused(FitText("x,y\n1,2\n"), {"found 1 data point", "at least 2"});

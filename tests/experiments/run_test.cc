@@ -1,0 +1,190 @@
+#include "experiments/run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/experiments/outlines.h"
+
+namespace batten {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+TEST(Run, RaceEndsWhereTheGradientHasFallenByTheTolerance) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  for (const char* solver : {"lbfgs", "lspia", "cg"}) {
+    RunSpec spec;
+    spec.gradient_tolerance = 1e-7;
+    const RunResult result = RunSolver(*problem, solver, spec);
+    EXPECT_EQ(result.outcome.reason, StopReason::kGradientSmall);
+    const double target = 1e-7 * result.start_gradient_norm;
+    for (const TraceRow& row : result.trace) {
+      EXPECT_EQ(row.gradient_norm <= target, row.iteration == result.iterations);
+    }
+  }
+}
+
+TEST(Run, WithoutATargetEndsAtTheRoundingFloor) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  for (const char* solver : {"lbfgs", "lspia", "cg"}) {
+    const RunResult result = RunSolver(*problem, solver, ToTheFloor());
+    EXPECT_EQ(result.outcome.reason, StopReason::kRoundingFloor) << solver;
+    EXPECT_LE(result.gradient_norm, result.gradient_floor);
+    // About four roundings of sums over the data, in the user's units.
+    EXPECT_LT(result.gradient_floor, 1e4 * kEps * result.start_gradient_norm);
+  }
+}
+
+TEST(Run, NativeEndsEachMethodByItsAuthorsRule) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  RunSpec spec;
+  spec.mode = Mode::kNative;
+  const RunResult lspia = RunSolver(*problem, "lspia", spec);
+  EXPECT_EQ(lspia.outcome.reason, StopReason::kStepSmall);
+  EXPECT_LT(lspia.trace.back().step_norm, 1e-6);
+  EXPECT_GE(lspia.trace[lspia.trace.size() - 2].step_norm, 1e-6);
+  const RunResult lbfgs = RunSolver(*problem, "lbfgs", spec);
+  EXPECT_EQ(lbfgs.outcome.reason, StopReason::kGradientSmall);
+  EXPECT_LT(lbfgs.gradient_norm, 1e-6);
+  EXPECT_GE(lbfgs.trace[lbfgs.trace.size() - 2].gradient_norm, 1e-6);
+  EXPECT_EQ(RunSolver(*problem, "banded_qr", spec).outcome.reason, StopReason::kSolved);
+}
+
+TEST(Run, LimitsEndIt) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  RunSpec spec;
+  for (const int limit : {0, 1, 7}) {
+    spec.max_iterations = limit;
+    const RunResult result = RunSolver(*problem, "lspia", spec);
+    EXPECT_EQ(result.outcome.reason, StopReason::kIterationLimit);
+    EXPECT_EQ(result.iterations, limit);
+    EXPECT_EQ(static_cast<int>(result.trace.size()), limit + 1);
+  }
+  spec = RunSpec();
+  spec.max_seconds = 1e-9;
+  EXPECT_EQ(RunSolver(*problem, "lspia", spec).outcome.reason, StopReason::kTimeLimit);
+}
+
+TEST(Run, TracesEveryIterationInTheUsersUnits) {
+  const auto problem = LoadCatalogueProblem("cat");
+  RunSpec spec;
+  spec.keep_iterates = true;
+  int num_progress = 0;
+  spec.progress = [&](const TraceRow& row) { EXPECT_EQ(row.iteration, num_progress++); };
+  const RunResult result = RunSolver(*problem, "lbfgs", spec);
+  const CurveFit& fit = *problem->curve_fit();
+  ASSERT_EQ(static_cast<int>(result.trace.size()), result.iterations + 1);
+  ASSERT_EQ(result.iterates.size(), result.trace.size());
+  EXPECT_EQ(num_progress, result.iterations + 1);
+  Points before = fit.ControlPoints(problem->start());
+  for (std::size_t k = 0; k < result.trace.size(); ++k) {
+    const TraceRow& row = result.trace[k];
+    EXPECT_EQ(row.iteration, static_cast<int>(k));
+    EXPECT_EQ(result.iterates[k].iteration, static_cast<int>(k));
+    const Points now = fit.ControlPoints(result.iterates[k].x);
+    const Points curve = fit.Curve(result.iterates[k].x).Sample(fit.parameters());
+    EXPECT_NEAR(row.energy, (curve - fit.data().points).squaredNorm(), 1e-12 * (1.0 + row.energy));
+    EXPECT_NEAR(row.step_norm, (now - before).rowwise().norm().maxCoeff(), 1e-11);
+    before = now;
+  }
+  EXPECT_EQ(result.iterates.back().x, result.x);
+  EXPECT_EQ(result.trace.back().energy, result.energy);
+  EXPECT_EQ(result.trace.front().energy, result.start_energy);
+  EXPECT_EQ(result.trace.back().gradient_norm, result.gradient_norm);
+}
+
+TEST(Run, CountsNeverFallAndEndAsInTheResult) {
+  const auto problem = LoadCatalogueProblem("cat");
+  for (const char* solver : {"lbfgs", "cg", "ceres_lbfgs", "ceres_lm"}) {
+    const RunResult result = RunSolver(*problem, solver);
+    for (std::size_t k = 1; k < result.trace.size(); ++k) {
+      const Counts& a = result.trace[k - 1].counts;
+      const Counts& b = result.trace[k].counts;
+      EXPECT_LE(a.energy_calls, b.energy_calls);
+      EXPECT_LE(a.gradient_calls, b.gradient_calls);
+      EXPECT_LE(a.products, b.products);
+      EXPECT_LE(a.distinct_points, b.distinct_points);
+      EXPECT_LE(result.trace[k - 1].seconds, result.trace[k].seconds);
+      EXPECT_LE(result.trace[k - 1].cpu_seconds, result.trace[k].cpu_seconds);
+    }
+    EXPECT_LE(result.counts.distinct_points,
+              result.counts.energy_calls + result.counts.gradient_calls) << solver;
+  }
+}
+
+TEST(Run, KeepsNothingThatIsNotAskedFor) {
+  const auto problem = LoadCatalogueProblem("cat");
+  RunSpec spec;
+  spec.keep_trace = false;
+  const RunResult result = RunSolver(*problem, "lbfgs", spec);
+  EXPECT_THAT(result.trace, IsEmpty());
+  EXPECT_THAT(result.iterates, IsEmpty());
+  EXPECT_GT(result.iterations, 5);
+}
+
+TEST(Run, SplitsTheEnergyByTerms) {
+  const auto problem = LoadCatalogueProblem("dolphin");
+  FixedFit fit(*problem);
+  std::string error;
+  ASSERT_TRUE(ParseNameSpecList("interpolation,interpolation/weight=3", &fit.spec.terms, &error));
+  const RunResult result = RunSolver(*fit.Make(), "cg");
+  ASSERT_GT(result.trace.size(), 3U);
+  for (const TraceRow& row : result.trace) {
+    ASSERT_EQ(row.term_energies.size(), 2U);
+    EXPECT_NEAR(row.term_energies[1], 3.0 * row.term_energies[0], 1e-12 * row.energy);
+    EXPECT_NEAR(row.term_energies[0] + row.term_energies[1], row.energy, 1e-12 * row.energy);
+  }
+}
+
+TEST(Run, ReachesTheSameMinimumWithoutCompilation) {
+  const auto problem = LoadCatalogueProblem("cat");
+  const RunResult direct = RunSolver(*problem, "banded_qr");
+  const double size = problem->curve_fit()->size();
+  for (const bool compile : {true, false}) {
+    RunSpec spec;
+    spec.compile = compile;
+    spec.gradient_tolerance = 0.0;
+    const RunResult result = RunSolver(*problem, "lbfgs", spec);
+    EXPECT_LT((ControlPointsOf(*problem, result) - ControlPointsOf(*problem, direct))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-8 * size)
+        << compile;
+    EXPECT_EQ(result.counts.energy_calls > 0, !compile);
+  }
+}
+
+TEST(Run, SeesTheRateOfTheGeometricIteration) {
+  const auto problem = LoadCatalogueProblem("rhino_interpolation");
+  EXPECT_NEAR(RunSolver(*problem, "gim").observed_rate, 2.0 / 3.0, 1e-3);
+  EXPECT_TRUE(std::isnan(RunSolver(*problem, "banded_qr").observed_rate));
+}
+
+TEST(Run, SaysWhatItDidNotDo) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  const RunResult skipped = RunSolver(*problem, "gim");
+  EXPECT_EQ(skipped.skipped, "gim needs 100 control points for 100 points");
+  EXPECT_EQ(skipped.outcome.reason, StopReason::kNotRun);
+  RunResult result;
+  std::string error;
+  EXPECT_FALSE(Run(*problem, {"lbgfs", {}, nullptr}, {}, &result, &error));
+  EXPECT_THAT(error, HasSubstr("did you mean lbfgs?"));
+  EXPECT_FALSE(Run(*problem, {"lbfgs", {{"memory", "2"}}, nullptr}, {}, &result, &error));
+  EXPECT_THAT(error, HasSubstr("3 to 20"));
+}
+
+TEST(Run, StatesTheOptionsItReallyUsed) {
+  const auto problem = LoadCatalogueProblem("dolphin");
+  const RunResult result = RunSolver(*problem, "lbfgs/memory=4");
+  EXPECT_EQ(result.options.at("memory"), "4");
+  EXPECT_EQ(result.options.at("wolfe"), "weak");
+}
+
+}  // namespace
+}  // namespace batten
