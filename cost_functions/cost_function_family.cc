@@ -94,6 +94,8 @@ bool CostFunctionFamily::DoEvaluate(const Eigen::VectorXd& x, int begin, int end
   for (int block = begin; block < end; ++block) {
     if (!EvaluateBlock(x, block, gradient != nullptr, &workspace)) return false;
     const double squared_norm = workspace.residuals.squaredNorm();
+    // A loss with a bound, such as Tukey's, would make a number of it.
+    if (!std::isfinite(squared_norm)) return false;
     double rho[3] = {squared_norm, 1.0, 0.0};
     if (loss() != nullptr) loss()->Evaluate(squared_norm, rho);
     *energy += weight() * rho[0];

@@ -30,28 +30,36 @@ Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* conte
   if (status != Status::kOk) return {context->stop_reason(), ""};
   const CurveView& view = *objective->curve_view();
   const NormalBand& band = view.normal_band();
+  // Forward error of normal equations: at most about the condition number of N times eps (Higham,
+  // Accuracy and Stability, sec. 20.4). 1e-8 of the data's size is what the solvers are to agree to;
+  // where no digit is sure, the normal equations are not the way.
+  constexpr double kDigitsLost = 1e-8;
+  constexpr double kNoDigit = 0.1;
   BandedCholesky factor;
   std::string message;
+  double condition = std::numeric_limits<double>::infinity();
   if (factor.Factor(band)) {
+    condition = factor.ConditionEstimate();
+    context->Note("condition of the normal equations", NumberText(condition));
+  }
+  const double error = condition * std::numeric_limits<double>::epsilon();
+  if (error < kNoDigit) {
     // For the difference from the start: what the start has right loses no digits.
     Eigen::VectorXd step(x->size());
     band.NormalResidual(x->data(), step.data());
     factor.Solve(step.data(), view.dimension());
     *x += step;
-    // Forward error of normal equations: the condition number of N times eps (Higham, Accuracy and
-    // Stability, sec. 20.4); 1e-8 of the data's size is what the solvers are to agree to.
-    constexpr double kDigitsLost = 1e-8;
-    const double condition = factor.ConditionEstimate();
-    const double error = condition * std::numeric_limits<double>::epsilon();
-    context->Note("condition of the normal equations", NumberText(condition));
     if (error > kDigitsLost) {
-      message = "the normal equations have condition " + NumberText(condition) +
-                ": about " + std::to_string(static_cast<int>(std::max(0.0, -std::log10(error)))) +
-                " digits are left; banded_qr keeps more";
+      message = "the normal equations have condition " + NumberText(condition) + ": only " +
+                std::to_string(static_cast<int>(-std::log10(error))) +
+                " digits are sure; banded_qr keeps more";
     }
   } else {
     const Points start = Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
     const NearestSolution solution = SolveNearest(view.row_source(), start);
+    if (solution.method.rfind("none", 0) == 0) {
+      return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
+    }
     *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
     message = "the normal equations are singular to working precision; solved by " +
               solution.method + (solution.unique ? "" : ", nearest to the start");

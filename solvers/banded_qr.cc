@@ -27,7 +27,7 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
   const Points start =
       Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
   const NearestSolution solution = SolveNearest(view.row_source(), start);
-  if (!solution.control_points.allFinite()) {
+  if (solution.method.rfind("none", 0) == 0 || !solution.control_points.allFinite()) {
     return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
   }
   *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());

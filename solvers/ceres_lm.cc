@@ -70,10 +70,10 @@ SolverInfo CeresLmSolver::ClassInfo() {
 std::string CeresLmSolver::WhyUnsupported(const Objective& objective) const {
   const std::string word = LinearSolverWord(options_);
   if (word == "sparse_normal_cholesky" && SparseLibrary() == ceres::NO_SPARSE) {
-    return "this Ceres has no sparse library; use ceres_lm/linear_solver=dense_qr";
+    return "ceres_lm finds no sparse library in this Ceres; use linear_solver=dense_qr";
   }
   if (word == "cgnr" && options_.Word("strategy") == "dogleg") {
-    return "ceres_lm/strategy=dogleg needs a factorization, which linear_solver=cgnr is not";
+    return "ceres_lm/strategy=dogleg needs a factorization; use another linear_solver than cgnr";
   }
   return WhyNoCeresProblem(objective.problem(), "ceres_lm");
 }

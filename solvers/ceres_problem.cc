@@ -59,7 +59,7 @@ bool FindGroups(const Problem& problem, VariableGroups* groups) {
 std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_name) {
   VariableGroups groups(problem.num_variables());
   if (!FindGroups(problem, &groups)) {
-    return solver_name + " needs terms that group the variables alike";
+    return solver_name + " needs terms that group the variables alike; use lbfgs";
   }
   if (!problem.has_bounds()) return "";
   if (!problem.elimination().trivial()) {

@@ -60,7 +60,7 @@ class Bracket {
     const double c1 = options_.sufficient_decrease;
     const bool decreased = p.change <= c1 * p.step * slope_at_zero_;
     const bool approximately =
-        p.change <= options_.noise && p.slope <= (2.0 * c1 - 1.0) * slope_at_zero_;
+        std::abs(p.change) <= options_.noise && p.slope <= (2.0 * c1 - 1.0) * slope_at_zero_;
     if (!decreased && !approximately) return true;
     return options_.strong && p.slope > -options_.curvature * slope_at_zero_;
   }
@@ -77,10 +77,14 @@ class Bracket {
   }
   double Interpolate() const {
     const double width = high_.step - low_.step;
-    double step = high_is_finite_ ? CubicMinimizer(low_, high_) : low_.step + 0.1 * width;
-    const bool noisy = std::abs(high_.change - low_.change) <= options_.noise;
-    if (high_is_finite_ && (noisy || !std::isfinite(step)) && high_.slope > low_.slope) {
-      step = SecantStep(low_, high_);
+    // Towards an end without a value by halves: in smaller steps a barrier is never reached.
+    double step = std::numeric_limits<double>::quiet_NaN();
+    if (high_is_finite_) {
+      step = CubicMinimizer(low_, high_);
+      const bool noisy = std::abs(high_.change - low_.change) <= options_.noise;
+      if ((noisy || !std::isfinite(step)) && high_.slope > low_.slope) {
+        step = SecantStep(low_, high_);
+      }
     }
     if (!std::isfinite(step)) step = low_.step + 0.5 * width;
     return std::clamp(step, low_.step + 0.05 * width, low_.step + 0.95 * width);

@@ -53,7 +53,7 @@ struct FlagArgument {
 FlagArgument TakeApart(const std::string& argument) {
   const size_t begin = argument.compare(0, 2, "--") == 0 ? 2 : 1;
   const size_t equals = argument.find('=', begin);
-  if (equals == argument.npos) return {argument.substr(begin), "", false};
+  if (equals == std::string::npos) return {argument.substr(begin), "", false};
   return {argument.substr(begin, equals - begin), argument.substr(equals + 1), true};
 }
 

@@ -245,6 +245,14 @@ TEST(CostFunctionFamily, AFailedCostFunctionIsNonFinite) {
   EXPECT_EQ(family.AddHessianTimes(undefined, defined, &vector), Status::kNonFinite);
 }
 
+TEST(CostFunctionFamily, NoLossHidesAResidualThatIsNoNumber) {
+  const auto family = MakeFamily(1.0, std::make_shared<ceres::TukeyLoss>(1.0));
+  Eigen::VectorXd x = SomePoint();
+  x[0] = std::nan("");
+  double energy = 0.0;
+  EXPECT_EQ(family->Evaluate(x, 0, family->size(), &energy, nullptr), Status::kNonFinite);
+}
+
 TEST(CostFunctionFamilyDeathTest, RefusesBlocksThatDoNotFit) {
   CostFunctionFamily family;
   EXPECT_EQ(family.num_residuals(), 0);

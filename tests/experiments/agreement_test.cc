@@ -104,7 +104,7 @@ std::vector<Change> Changes(double size) {
 
 class Agreement : public ::testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(Outlines, Agreement, ::testing::ValuesIn(kOutlines),
+INSTANTIATE_TEST_SUITE_P(Outlines, Agreement, ::testing::Values("rhino", "squirrel", "dolphin", "cat"),
                          [](const auto& outline) { return outline.param; });
 
 /// Run to the floor, or to where its own search ends; not to a limit.

@@ -15,8 +15,6 @@
 
 namespace batten {
 
-inline constexpr const char* kOutlines[] = {"rhino", "squirrel", "dolphin", "cat"};
-
 inline std::unique_ptr<Problem> LoadCatalogueProblem(const std::string& name) {
   CatalogueEntry entry;
   std::string error;

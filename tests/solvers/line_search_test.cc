@@ -131,12 +131,9 @@ TEST(SearchWolfe, OnlyStrongConditionsBoundTheSlopeFromAbove) {
 }
 
 TEST(SearchWolfe, NearRoundingTheSlopesAloneDecide) {
-  // phi = 1 + c a (a - 2): values near 1 know changes of c only in units of eps, c = eps / 16.
-  const double c = kEps / 16.0;
-  const auto value = [c](double a) {
-    const volatile double sum = 1.0 + c * a * (a - 2.0);
-    return static_cast<double>(sum);
-  };
+  // phi = c a (a - 2) with c far below the rounding of phi, which shows as a rise of 2 eps.
+  const double c = 1e-20;
+  const auto value = [](double a) { return a == 0.0 ? 0.0 : 2.0 * kEps; };
   const auto slope = [c](double a) { return c * (2.0 * a - 2.0); };
   for (const double first : {0.03, 1.0, 1.7, 90.0}) {
     ClosedForm line(value, slope);
@@ -152,11 +149,22 @@ TEST(SearchWolfe, NearRoundingTheSlopesAloneDecide) {
 }
 
 TEST(SearchWolfe, NoiseDoesNotExcuseARiseAboveIt) {
-  ClosedForm line([](double a) { return 1e-3 * a; }, [](double) { return -1e-6; });
+  ClosedForm line([](double a) { return a == 0.0 ? 0.0 : 1e-3; }, [](double) { return -1e-6; });
   WolfeOptions options;
   options.noise = 1e-12;
   LinePoint found;
   EXPECT_EQ(SearchWolfe(options, -1.0, 1.0, &line, &found), LineSearchEnd::kNoStep);
+}
+
+TEST(SearchWolfe, NoiseDoesNotExcuseATooSmallDecreaseThatIsSeen) {
+  // Flat but for a fall of 1e-5 at once: slopes alone would take any step.
+  ClosedForm line([](double a) { return a == 0.0 ? 0.0 : -1e-5; },
+                  [](double a) { return a == 0.0 ? -1.0 : 0.0; });
+  WolfeOptions options;
+  options.noise = 1e-12;
+  LinePoint found;
+  ASSERT_EQ(SearchWolfe(options, -1.0, 10.0, &line, &found), LineSearchEnd::kFound);
+  EXPECT_LE(found.change, options.sufficient_decrease * found.step * -1.0);
 }
 
 TEST(SearchWolfe, FindsNoStepAlongAnAscent) {
