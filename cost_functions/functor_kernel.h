@@ -259,7 +259,8 @@ class FunctorKernel {
   }
   static double Loss(const ceres::LossFunction* loss, double squared_norm, double* slope) {
     *slope = 1.0;
-    if (loss == nullptr) return squared_norm;
+    // A loss that is flat far out would give a finite value for no number at all.
+    if (loss == nullptr || !std::isfinite(squared_norm)) return squared_norm;
     double rho[3];
     loss->Evaluate(squared_norm, rho);
     *slope = rho[1];

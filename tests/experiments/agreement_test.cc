@@ -176,6 +176,17 @@ TEST_P(Agreement, PowersOfTwoChangeNoBitAndNoIteration) {
   }
 }
 
+/// Iterations until |g| has lost six digits: before Ceres' line search, which sees differences of E
+/// itself, ends in their rounding noise, where the iteration it ends in is chance.
+int IterationsToSixDigits(const RunResult& result) {
+  constexpr double kSixDigits = 1e-6;
+  for (const TraceRow& row : result.trace) {
+    if (row.gradient_norm <= kSixDigits * result.start_gradient_norm) return row.iteration;
+  }
+  ADD_FAILURE() << result.solver.ToString() << " does not come that far";
+  return -1;
+}
+
 TEST_P(Agreement, ChangesHardlyMoveTheNumberOfIterations) {
   const auto problem = LoadCatalogueProblem(GetParam());
   for (const std::string& solver : Solvers()) {
@@ -186,7 +197,8 @@ TEST_P(Agreement, ChangesHardlyMoveTheNumberOfIterations) {
       change.apply(&fit);
       const RunResult result = RunSolver(*fit.Make(), solver);
       // A tenth, and one for the first step, which the scale inside changes by up to 2.
-      EXPECT_NEAR(result.iterations, plain.iterations, 1 + plain.iterations / 10)
+      const int expected = IterationsToSixDigits(plain);
+      EXPECT_NEAR(IterationsToSixDigits(result), expected, 1 + expected / 10)
           << solver << " " << change.name;
     }
   }

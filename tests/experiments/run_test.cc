@@ -162,7 +162,12 @@ TEST(Run, ReachesTheSameMinimumWithoutCompilation) {
 
 TEST(Run, SeesTheRateOfTheGeometricIteration) {
   const auto problem = LoadCatalogueProblem("rhino_interpolation");
-  EXPECT_NEAR(RunSolver(*problem, "gim").observed_rate, 2.0 / 3.0, 1e-3);
+  // The eigenvalues of I - A are 2/3 - (1 + cos a_k) / 3, a_k = 2 pi k / 100, and crowd below 2/3: all
+  // |k - 50| <= 5 lie within 2/3 (1 - 0.025). In some 50 iterations they cannot be told apart, and
+  // the mean rate lies among them, never above the radius.
+  const double rate = RunSolver(*problem, "gim").observed_rate;
+  EXPECT_LT(rate, 2.0 / 3.0 + 1e-6);
+  EXPECT_GT(rate, 2.0 / 3.0 * (1.0 - 0.025));
   EXPECT_TRUE(std::isnan(RunSolver(*problem, "banded_qr").observed_rate));
 }
 

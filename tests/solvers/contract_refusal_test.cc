@@ -155,7 +155,8 @@ void ExpectHoldsCurveAt(const std::string& solver, int degree, bool closed, int 
     for (int j = 0; j < c.cols(); ++j) {
       c(static_cast<Eigen::Index>(k), j) = DenseFit::Coefficient(fit.basis(), parameters[k], j);
     }
-    targets.row(static_cast<Eigen::Index>(k)) = 0.3 * RandomPoints(1, dimension, &random);
+    const Points drawn = RandomPoints(1, dimension, &random);
+    for (int i = 0; i < dimension; ++i) targets(static_cast<Eigen::Index>(k), i) = 0.3 * drawn(0, i);
     for (auto& constraint :
          ThroughPoint(fit, parameters[k], targets.row(static_cast<Eigen::Index>(k)))) {
       constraints.push_back(std::move(constraint));
