@@ -15,7 +15,8 @@ template <typename S>
 struct DirectionalDual {
   DirectionalDual() = default;
   // Conversion from plain numbers is what lets functors write `T(0)` and `2.0 * t`.
-  DirectionalDual(double number) : value(number), slope(0.0) {}  // NOLINT(google-explicit-constructor)
+  DirectionalDual(double number)
+      : value(number), slope(0.0) {}  // NOLINT(google-explicit-constructor)
   DirectionalDual(const S& v, const S& s) : value(v), slope(s) {}
 
   DirectionalDual& operator+=(const DirectionalDual& b) { return *this = *this + b; }
@@ -37,12 +38,24 @@ struct DirectionalDual {
     const S quotient = a.value / b.value;
     return {quotient, (a.slope - quotient * b.slope) / b.value};
   }
-  friend bool operator<(const DirectionalDual& a, const DirectionalDual& b) { return a.value < b.value; }
-  friend bool operator>(const DirectionalDual& a, const DirectionalDual& b) { return a.value > b.value; }
-  friend bool operator<=(const DirectionalDual& a, const DirectionalDual& b) { return a.value <= b.value; }
-  friend bool operator>=(const DirectionalDual& a, const DirectionalDual& b) { return a.value >= b.value; }
-  friend bool operator==(const DirectionalDual& a, const DirectionalDual& b) { return a.value == b.value; }
-  friend bool operator!=(const DirectionalDual& a, const DirectionalDual& b) { return a.value != b.value; }
+  friend bool operator<(const DirectionalDual& a, const DirectionalDual& b) {
+    return a.value < b.value;
+  }
+  friend bool operator>(const DirectionalDual& a, const DirectionalDual& b) {
+    return a.value > b.value;
+  }
+  friend bool operator<=(const DirectionalDual& a, const DirectionalDual& b) {
+    return a.value <= b.value;
+  }
+  friend bool operator>=(const DirectionalDual& a, const DirectionalDual& b) {
+    return a.value >= b.value;
+  }
+  friend bool operator==(const DirectionalDual& a, const DirectionalDual& b) {
+    return a.value == b.value;
+  }
+  friend bool operator!=(const DirectionalDual& a, const DirectionalDual& b) {
+    return a.value != b.value;
+  }
 
   friend DirectionalDual sqrt(const DirectionalDual& a) {
     using std::sqrt;

@@ -30,15 +30,15 @@ struct Sites {
 /// Sorts items by span: one pass where parameters already are in order of their spans.
 void GroupBySpan(const BsplineBasis& basis, Sites* sites);
 
-/// What a term is told about the fit: the spline space, the data, and where the control points stand
-/// in x. Inside, data are (point - center) * scale.
+/// What a term is told about the fit: the spline space, the data, and where the control points
+/// stand in x. Inside, data are (point - center) * scale.
 struct FitSetting {
   const BsplineBasis* basis = nullptr;
   int dimension = 0;
   double center[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
-  double scale = 1.0;           // a power of two
-  int control_point_offset = 0; // P_j stands at x[control_point_offset + j * dimension]
-  const Sites* data = nullptr;  // the data points at their fixed parameters
+  double scale = 1.0;            // a power of two
+  int control_point_offset = 0;  // P_j stands at x[control_point_offset + j * dimension]
+  const Sites* data = nullptr;   // the data points at their fixed parameters
   /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).
   bool use_static_sizes = true;
 };

@@ -32,7 +32,9 @@ class FunctorFamily final : public BlockFamily, private RowSource {
  public:
   FunctorFamily(const FitSetting& setting, Functor functor, double weight,
                 std::shared_ptr<const ceres::LossFunction> loss)
-      : BlockFamily(weight, std::move(loss)), setting_(setting), functor_(std::move(functor)),
+      : BlockFamily(weight, std::move(loss)),
+        setting_(setting),
+        functor_(std::move(functor)),
         sites_(functor_.MakeSites(setting)) {
     if constexpr (kMayHaveRows) rows_are_alike_ = RowsAreAlike();
   }
@@ -59,8 +61,8 @@ class FunctorFamily final : public BlockFamily, private RowSource {
 
   std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(int block) const override {
     return WithKernel([&](const auto& kernel) {
-      return MakeFunctorCostFunction(functor_, kernel.MakeSite(block, SpanOf(block)), *setting_.basis,
-                                     setting_.dimension);
+      return MakeFunctorCostFunction(functor_, kernel.MakeSite(block, SpanOf(block)),
+                                     *setting_.basis, setting_.dimension);
     });
   }
 
@@ -86,16 +88,16 @@ class FunctorFamily final : public BlockFamily, private RowSource {
   int SpanOf(int block) const {
     const auto& groups = sites_->groups;
     return std::upper_bound(groups.begin(), groups.end(), block,
-                            [](int site, const Sites::Group& g) { return site < g.end; })->span;
+                            [](int site, const Sites::Group& g) { return site < g.end; })
+        ->span;
   }
 
   bool DoEvaluate(const Eigen::VectorXd& x, int begin, int end, double* energy,
                   Eigen::VectorXd* gradient) const override {
     return WithKernel([&](const auto& kernel) {
-      return gradient == nullptr
-                 ? kernel.Energy(x.data(), begin, end, weight(), loss(), energy)
-                 : kernel.EnergyAndGradient(x.data(), begin, end, weight(), loss(), energy,
-                                            gradient->data());
+      return gradient == nullptr ? kernel.Energy(x.data(), begin, end, weight(), loss(), energy)
+                                 : kernel.EnergyAndGradient(x.data(), begin, end, weight(), loss(),
+                                                            energy, gradient->data());
     });
   }
 
@@ -116,7 +118,8 @@ class FunctorFamily final : public BlockFamily, private RowSource {
                   std::vector<Eigen::Triplet<double>>* entries) const override {
     return WithKernel([&](const auto& kernel) {
       std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
-      std::vector<double> jacobian(residuals.size() * static_cast<std::size_t>(kernel.num_variables()));
+      std::vector<double> jacobian(residuals.size() *
+                                   static_cast<std::size_t>(kernel.num_variables()));
       return kernel.ForEachSite(
           0, size(), [](const auto&) {},
           [&](const auto& site, int s, const auto& window) {
@@ -127,9 +130,9 @@ class FunctorFamily final : public BlockFamily, private RowSource {
             for (std::size_t e = 0; e < jacobian.size(); ++e) {
               const int row = static_cast<int>(e) / kernel.num_variables();
               const int v = static_cast<int>(e) % kernel.num_variables();
-              entries->emplace_back(
-                  first_row + s * num_residuals() + row,
-                  window.offset[v / kernel.dimension()] + v % kernel.dimension(), jacobian[e]);
+              entries->emplace_back(first_row + s * num_residuals() + row,
+                                    window.offset[v / kernel.dimension()] + v % kernel.dimension(),
+                                    jacobian[e]);
             }
             return true;
           },
@@ -162,8 +165,8 @@ class FunctorFamily final : public BlockFamily, private RowSource {
     }
   }
 
-  /// Whether the residual's derivative really is one row for all coordinates: tried on the first and
-  /// the last block. A functor that claims it wrongly is evaluated uncompiled.
+  /// Whether the residual's derivative really is one row for all coordinates: tried on the first
+  /// and the last block. A functor that claims it wrongly is evaluated uncompiled.
   bool RowsAreAlike() const {
     const int d = setting_.dimension;
     if (num_residuals() != d || size() == 0) return false;
@@ -171,8 +174,8 @@ class FunctorFamily final : public BlockFamily, private RowSource {
       const int num_variables = kernel.num_variables();
       std::vector<double> residuals(static_cast<std::size_t>(d));
       std::vector<double> jacobian(static_cast<std::size_t>(d * num_variables));
-      const Eigen::VectorXd x = Eigen::VectorXd::Zero(
-          setting_.control_point_offset + setting_.basis->num_control_points() * d);
+      const Eigen::VectorXd x = Eigen::VectorXd::Zero(setting_.control_point_offset +
+                                                      setting_.basis->num_control_points() * d);
       for (const int block : {0, size() - 1}) {
         const int span = SpanOf(block);
         const auto site = kernel.MakeSite(block, span);

@@ -64,7 +64,8 @@ class FunctorKernel {
           sites_.points == nullptr
               ? 0.0
               : (sites_.points[static_cast<std::ptrdiff_t>(item) * dimension() + c] -
-                 setting_.center[c]) * setting_.scale;
+                 setting_.center[c]) *
+                    setting_.scale;
     }
     site.set_root_weight(sites_.weights == nullptr ? 1.0 : std::sqrt(sites_.weights[item]));
     return site;
@@ -192,7 +193,8 @@ class FunctorKernel {
         for (int j = 0; j < order(); ++j) {
           for (int c = 0; c < dimension(); ++c) {
             const int v = j * dimension() + c;
-            variables[v] = Second(Jet(x[window.offset[j] + c]), Jet(direction[window.offset[j] + c]));
+            variables[v] =
+                Second(Jet(x[window.offset[j] + c]), Jet(direction[window.offset[j] + c]));
             if (v >= first && v < first + kChunk) variables[v].value.v[v - first] = 1.0;
           }
         }
@@ -210,9 +212,10 @@ class FunctorKernel {
           double sum = 0.0;
           for (int r = 0; r < num_residuals(); ++r) {
             const double derivative = results[r].value.v[k];
-            sum += 2.0 * rho[1] * (derivative * results[r].slope.a +
-                                   results[r].value.a * results[r].slope.v[k]) +
-                   4.0 * rho[2] * change * derivative * results[r].value.a;
+            sum +=
+                2.0 * rho[1] *
+                    (derivative * results[r].slope.a + results[r].value.a * results[r].slope.v[k]) +
+                4.0 * rho[2] * change * derivative * results[r].value.a;
           }
           const int v = first + k;
           product[window.offset[v / dimension()] + v % dimension()] += weight * sum;
@@ -220,7 +223,8 @@ class FunctorKernel {
       }
       return true;
     };
-    return ForEachSite(0, sites_.size, [](const Window&) {}, body, [](const Window&) {});
+    return ForEachSite(
+        0, sites_.size, [](const Window&) {}, body, [](const Window&) {});
   }
 
   /// Hands out the rows root_factor * (A, Q) of an affine residual whose rows are alike for all
@@ -267,8 +271,9 @@ class FunctorKernel {
     return rho[0];
   }
 
-  void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points, int begin,
-                const RowBlock& block, double root_factor, double* coefficients, double* right_hand_sides) const {
+  void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points,
+                int begin, const RowBlock& block, double root_factor, double* coefficients,
+                double* right_hand_sides) const {
     // Whole packs of neighbours in memory first; then the rest, a lane at a time.
     const int in_a_row = sites_.order.empty() ? block.num_rows / kRowPack * kRowPack : 0;
     for (int first = 0; first < in_a_row; first += kRowPack) {
@@ -276,8 +281,8 @@ class FunctorKernel {
                      coefficients + first, right_hand_sides + first);
     }
     for (int first = in_a_row; first < block.stride; first += kRowPack) {
-      FillPack<false>(span_basis, span, points, begin + first, begin + block.num_rows - 1, root_factor,
-                      block.stride, coefficients + first, right_hand_sides + first);
+      FillPack<false>(span_basis, span, points, begin + first, begin + block.num_rows - 1,
+                      root_factor, block.stride, coefficients + first, right_hand_sides + first);
     }
     for (int i = block.num_rows; i < block.stride; ++i) {
       for (int j = 0; j < order(); ++j) coefficients[j * block.stride + i] = 0.0;
@@ -300,10 +305,10 @@ class FunctorKernel {
   /// The rows of kRowPack sites. Coordinate by coordinate the functor sees a curve with one
   /// coordinate, whose control point j is the variable x_j.
   template <bool kInARow>
-  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, Pack>& span_basis, int span,
-                                                      const Form* const* points, int first,
-                                                      int last, double root_factor, int stride,
-                                                      double* coefficients,
+  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, Pack>& span_basis,
+                                                      int span, const Form* const* points,
+                                                      int first, int last, double root_factor,
+                                                      int stride, double* coefficients,
                                                       double* right_hand_sides) const {
     Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
     const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
@@ -324,8 +329,9 @@ class FunctorKernel {
     for (int c = 0; c < dimension(); ++c) {
       Pack point(0.0);
       if (sites_.points != nullptr) {
-        point = (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
-                setting_.scale;
+        point =
+            (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
+            setting_.scale;
       }
       site.mutable_point()[0] = point;
       functor_(site, points, &result);

@@ -7,7 +7,8 @@
 
 namespace batten {
 
-/// r_i = sqrt(w_i) (C(t_i) - Q_i), one block per data point, d residuals: sum_i w_i |C(t_i) - Q_i|^2.
+/// r_i = sqrt(w_i) (C(t_i) - Q_i), one block per data point, d residuals: sum_i w_i |C(t_i) -
+/// Q_i|^2.
 struct InterpolationResidual {
   static TermInfo Info();
   static constexpr bool kAffine = true;

@@ -16,8 +16,8 @@ struct OptionInfo {
                          std::string help);  ///< Range closed at both ends; infinity allowed.
   static OptionInfo Integer(std::string name, int default_value, int lowest, int highest,
                             std::string help);
-  static OptionInfo Word(std::string name, std::string default_value, std::vector<std::string> words,
-                         std::string help);
+  static OptionInfo Word(std::string name, std::string default_value,
+                         std::vector<std::string> words, std::string help);
 
   std::string name;
   std::string help;
@@ -37,7 +37,7 @@ class OptionValues {
  public:
   OptionValues() = default;
   explicit OptionValues(const std::vector<OptionInfo>& infos);  ///< All defaults.
-  double Real(const std::string& name) const;      // a name that is not there is our bug: CHECK
+  double Real(const std::string& name) const;  // a name that is not there is our bug: CHECK
   int Integer(const std::string& name) const;
   const std::string& Word(const std::string& name) const;
   void SetNumber(const std::string& name, double value) { numbers_[name] = value; }
@@ -67,8 +67,8 @@ bool ParseNameSpecList(const std::string& text, std::vector<NameSpec>* specs, st
 
 /// Defaults overwritten by spec.options. An unknown option is answered with the nearest known one
 /// and its range, a value outside its range with the range.
-bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec, OptionValues* values,
-                    std::string* error);
+bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
+                    OptionValues* values, std::string* error);
 
 /// The entry of `known` with the smallest edit distance (the first of equals); empty for none.
 std::string NearestName(const std::string& name, const std::vector<std::string>& known);

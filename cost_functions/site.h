@@ -38,8 +38,9 @@ class Site {
   /// The same when rows are compiled: the span's own control points are the variables x_j then, and
   /// products with the zeros and ones of their forms would be most of the work.
   template <int kVariables>
-  AffineForm<Real, kVariables> Derivative(
-      int k, const AffineForm<Real, kVariables>* const* control_points, int coordinate) const {
+  AffineForm<Real, kVariables> Derivative(int k,
+                                          const AffineForm<Real, kVariables>* const* control_points,
+                                          int coordinate) const {
     const Real* values = basis_ + k * (degree() + 1);
     if (control_points == variables_) {
       return AffineForm<Real, kVariables>::Combination(values, degree() + 1);

@@ -13,13 +13,14 @@ namespace batten {
 
 struct TermInfo {
   std::string name;
-  std::string summary;               ///< One line.
-  std::string source;                ///< Where it is from.
-  bool affine = false;               ///< Residual affine in the control points, coordinates alike.
-  std::vector<OptionInfo> options;   ///< Its own; every term also has CommonTermOptions().
+  std::string summary;              ///< One line.
+  std::string source;               ///< Where it is from.
+  bool affine = false;              ///< Residual affine in the control points, coordinates alike.
+  std::vector<OptionInfo> options;  ///< Its own; every term also has CommonTermOptions().
 };
 
-/// weight=1 (>= 0), loss=none|huber|cauchy|tukey|soft_l1, loss_scale=1 (in units of the scaled data).
+/// weight=1 (>= 0), loss=none|huber|cauchy|tukey|soft_l1, loss_scale=1 (in units of the scaled
+/// data).
 std::vector<OptionInfo> CommonTermOptions();
 
 /// What is registered: makes the blocks of one named term for one fit.

@@ -23,14 +23,14 @@ struct RunSpec {
   Mode mode = Mode::kRace;
   /// race: stop when |g| <= gradient_tolerance * |g(start)|; 0: at the rounding floor only.
   double gradient_tolerance = 1e-10;
-  int max_iterations = 10000;         ///< >= 0
-  double max_seconds = 60.0;          ///< > 0, of the solver's own wall time.
+  int max_iterations = 10000;  ///< >= 0
+  double max_seconds = 60.0;   ///< > 0, of the solver's own wall time.
   /// native, absolute, in the user's units.
   double native_step = 1e-6;
   double native_gradient = 1e-6;
   std::uint64_t seed = 1;
   int threads = 1;
-  bool compile = true;                ///< False: all evaluations through the autodiff functors.
+  bool compile = true;  ///< False: all evaluations through the autodiff functors.
   bool keep_trace = true;
   bool keep_iterates = false;
   /// Called off the clock at iterations; may be empty.
@@ -48,18 +48,18 @@ struct RunResult {
   std::map<std::string, std::string> options;  ///< As really used.
   std::string skipped;                         ///< Not empty: the solver does not apply, and why.
   Outcome outcome;
-  Eigen::VectorXd x;                           ///< All variables, scaled as inside.
+  Eigen::VectorXd x;  ///< All variables, scaled as inside.
   int iterations = 0;
   Counts counts;
-  double setup_seconds = 0.0;                  ///< Until iteration 0 was booked.
-  double seconds = 0.0;                        ///< All of the solver's wall time.
+  double setup_seconds = 0.0;  ///< Until iteration 0 was booked.
+  double seconds = 0.0;        ///< All of the solver's wall time.
   double cpu_seconds = 0.0;
   double start_energy = 0.0;
   double start_gradient_norm = 0.0;
   double energy = 0.0;
   double gradient_norm = 0.0;
-  double gradient_floor = 0.0;                 ///< Rounding floor of |g|.
-  double observed_rate = 0.0;                  ///< Factor of |g| per iteration near the end; NaN: none.
+  double gradient_floor = 0.0;  ///< Rounding floor of |g|.
+  double observed_rate = 0.0;   ///< Factor of |g| per iteration near the end; NaN: none.
   std::vector<std::pair<std::string, std::string>> notes;
   std::vector<TraceRow> trace;
   std::vector<Iterate> iterates;

@@ -52,7 +52,10 @@ double Stopwatch::SecondsNow() const { return seconds_ + (running_ ? WallNow() -
 
 RunControl::RunControl(const Problem& problem, const RunSpec& spec, NativeRule rule,
                        RunResult* result)
-    : problem_(problem), spec_(spec), rule_(rule), result_(result),
+    : problem_(problem),
+      spec_(spec),
+      rule_(rule),
+      result_(result),
       reporter_(&problem, nullptr, Objective::Options{spec.compile}) {}
 
 bool RunControl::Allow(Evaluation kind, const Eigen::VectorXd* x) {
@@ -65,11 +68,21 @@ bool RunControl::Allow(Evaluation kind, const Eigen::VectorXd* x) {
   if (stop_reason_ != StopReason::kNotRun) return false;
   Counts& counts = result_->counts;
   switch (kind) {
-    case Evaluation::kEnergy: ++counts.energy_calls; break;
-    case Evaluation::kGradient: ++counts.gradient_calls; break;
-    case Evaluation::kJacobian: ++counts.jacobian_calls; break;
-    case Evaluation::kProduct: ++counts.products; break;
-    case Evaluation::kProjection: ++counts.projections; break;
+    case Evaluation::kEnergy:
+      ++counts.energy_calls;
+      break;
+    case Evaluation::kGradient:
+      ++counts.gradient_calls;
+      break;
+    case Evaluation::kJacobian:
+      ++counts.jacobian_calls;
+      break;
+    case Evaluation::kProduct:
+      ++counts.products;
+      break;
+    case Evaluation::kProjection:
+      ++counts.projections;
+      break;
   }
   if (x != nullptr && kind != Evaluation::kProduct) {
     OffTheClock([this, x] { points_.insert(HashPoint(*x)); });

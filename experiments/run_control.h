@@ -15,9 +15,9 @@ class Stopwatch {
   void Resume();
   void Pause();
   bool running() const { return running_; }
-  double seconds() const { return seconds_; }          ///< Up to the last Pause.
+  double seconds() const { return seconds_; }  ///< Up to the last Pause.
   double cpu_seconds() const { return cpu_seconds_; }
-  double SecondsNow() const;                           ///< Also while running.
+  double SecondsNow() const;  ///< Also while running.
 
  private:
   bool running_ = false;

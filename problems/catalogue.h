@@ -10,13 +10,13 @@
 
 namespace batten {
 
-/// A problem file (docs/formats.md): JSON with "name", "data" (path, relative to the data folder or to
-/// the file), "spline" {"degree", "closed", "control_points", "knots", "ends"}, "parameters",
+/// A problem file (docs/formats.md): JSON with "name", "data" (path, relative to the data folder or
+/// to the file), "spline" {"degree", "closed", "control_points", "knots", "ends"}, "parameters",
 /// "terms" (list of names with options), "start", "reference" {"energy", ...}, "citation".
 struct CatalogueEntry {
   std::string name;
-  std::string path;          // of the problem file
-  std::string data_path;     // resolved
+  std::string path;       // of the problem file
+  std::string data_path;  // resolved
   FitSpec spec;
   double reference_energy = 0.0;  // E* in the user's units; NaN: not stated
   std::string citation;
@@ -30,7 +30,8 @@ bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string
 /// installation, or BATTEN_CATALOGUE. Sorted.
 std::vector<std::string> CatalogueNames();
 
-/// A problem by catalogue name or by path of a problem file (anything with a `/` or ending in .json).
+/// A problem by catalogue name or by path of a problem file (anything with a `/` or ending in
+/// .json).
 bool FindProblem(const std::string& name_or_path, CatalogueEntry* entry, std::string* error);
 std::unique_ptr<Problem> LoadProblem(const CatalogueEntry& entry, std::string* error);
 

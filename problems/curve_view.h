@@ -12,8 +12,8 @@
 namespace batten {
 
 /// A problem all of whose terms are compiled rows, as geometric methods see it:
-/// E(P) = ||A P - Q||^2 in n unknown points P of dimension d (x read row-major; after elimination of
-/// constraints, A and Q are those of the points that stay). Products are counted.
+/// E(P) = ||A P - Q||^2 in n unknown points P of dimension d (x read row-major; after elimination
+/// of constraints, A and Q are those of the points that stay). Products are counted.
 class CurveView {
  public:
   /// Null if some term has no rows, or constraints treat coordinates differently.
@@ -21,7 +21,7 @@ class CurveView {
 
   int num_points() const { return shape_.num_columns; }  // n
   int dimension() const { return shape_.dimension; }
-  int num_rows() const { return shape_.num_rows; }       // m
+  int num_rows() const { return shape_.num_rows; }  // m
   const RowShape& shape() const { return shape_; }
 
   /// The rows as they come from the functors; streaming them costs their evaluation, keeps nothing.

@@ -11,8 +11,8 @@ Points CurveFit::ControlPoints(const Eigen::VectorXd& x) const {
   Points points(n, dimension());
   for (int j = 0; j < n; ++j) {
     for (int c = 0; c < dimension(); ++c) {
-      points(j, c) = x[static_cast<Eigen::Index>(j) * dimension() + c] / setting_.scale +
-                     setting_.center[c];
+      points(j, c) =
+          x[static_cast<Eigen::Index>(j) * dimension() + c] / setting_.scale + setting_.center[c];
     }
   }
   return points;
@@ -75,8 +75,8 @@ bool CurveFit::ChooseKnots(std::string* error) {
   std::vector<double> knots = spec_.given_knots;
   if (knots.empty()) {
     if (spec_.control_points < lowest || spec_.control_points > kMaxControlPoints) {
-      *error = "control_points is " + std::to_string(spec_.control_points) + "; allowed: " +
-               std::to_string(lowest) + " to " + std::to_string(kMaxControlPoints) +
+      *error = "control_points is " + std::to_string(spec_.control_points) +
+               "; allowed: " + std::to_string(lowest) + " to " + std::to_string(kMaxControlPoints) +
                (spec_.closed ? "" : " (degree + 1 or more for an open curve)");
       return false;
     }
@@ -94,8 +94,8 @@ bool CurveFit::ChooseKnots(std::string* error) {
   basis_ = BsplineBasis::Make(spec_.degree, spec_.closed, std::move(knots), error);
   if (!basis_.has_value()) return false;
   if (spec_.control_points != 0 && spec_.control_points != basis_->num_control_points()) {
-    *error = "control_points is " + std::to_string(spec_.control_points) + ", but the given knots make " +
-             std::to_string(basis_->num_control_points());
+    *error = "control_points is " + std::to_string(spec_.control_points) +
+             ", but the given knots make " + std::to_string(basis_->num_control_points());
     return false;
   }
   spec_.control_points = basis_->num_control_points();
@@ -214,7 +214,8 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   fit->setting_.basis = &*fit->basis_;
   fit->setting_.data = &fit->sites_;
 
-  auto problem = std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
+  auto problem =
+      std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
   problem->AddVariables("control_points", fit->Variables(fit->StartPoints()));
   for (const NameSpec& name : fit->spec_.terms) {
     const Term* term = nullptr;

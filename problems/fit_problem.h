@@ -20,18 +20,18 @@ inline constexpr int kMaxControlPoints = 10'000'000;
 /// What is to be fitted to a data set; every field as in problem files and flags.
 struct FitSpec {
   std::string name;
-  int degree = 3;                 // 1..kMaxDegree
+  int degree = 3;  // 1..kMaxDegree
   bool closed = false;
-  int control_points = 0;         // open: degree + 1..kMaxControlPoints; closed: from 1
+  int control_points = 0;  // open: degree + 1..kMaxControlPoints; closed: from 1
   /// Nothing: the data set's own column t.
   std::optional<Parameterization> parameters = Parameterization::kUniform;
   KnotRule knots = KnotRule::kUniform;
-  EndKnots ends = EndKnots::kEndInterpolating;   // open only
-  std::vector<double> given_knots;               // not empty: instead of the rule
+  EndKnots ends = EndKnots::kEndInterpolating;      // open only
+  std::vector<double> given_knots;                  // not empty: instead of the rule
   std::optional<std::pair<double, double>> domain;  // with given parameters; default: their range,
                                                     // closed: [0, 1]
-  std::vector<NameSpec> terms;                   // empty: interpolation
-  std::string start = "data";                    // data | centroid
+  std::vector<NameSpec> terms;                      // empty: interpolation
+  std::string start = "data";                       // data | centroid
 };
 
 /// The curve-fit side of a problem: data, spline space, parameters, and the map between the scaled

@@ -19,8 +19,8 @@ struct LinearConstraint {
 };
 
 /// x = offset + Z y: the points x that meet all linear constraints, in fewer unknowns y. Each
-/// independent constraint gives up the variable with its largest coefficient after the ones before it
-/// are put in (Gauss-Jordan), so Z has the identity in the rows of the variables that stay.
+/// independent constraint gives up the variable with its largest coefficient after the ones before
+/// it are put in (Gauss-Jordan), so Z has the identity in the rows of the variables that stay.
 class LinearElimination {
  public:
   /// Nothing to eliminate.
@@ -34,16 +34,16 @@ class LinearElimination {
   int num_free(int num_variables) const {
     return trivial() ? num_variables : static_cast<int>(z_.cols());
   }
-  Eigen::VectorXd Expand(const Eigen::VectorXd& y) const;             ///< offset + Z y.
-  Eigen::VectorXd ExpandDirection(const Eigen::VectorXd& v) const;    ///< Z v.
-  Eigen::VectorXd Restrict(const Eigen::VectorXd& gradient) const;    ///< Z' g.
+  Eigen::VectorXd Expand(const Eigen::VectorXd& y) const;           ///< offset + Z y.
+  Eigen::VectorXd ExpandDirection(const Eigen::VectorXd& v) const;  ///< Z v.
+  Eigen::VectorXd Restrict(const Eigen::VectorXd& gradient) const;  ///< Z' g.
   /// The y whose free variables are those of x: meets the constraints whether x does or not.
   Eigen::VectorXd FreeVariables(const Eigen::VectorXd& x) const;
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& z() const { return z_; }
   const std::vector<int>& free() const { return free_; }  ///< Variable behind each y.
 
-  /// If Z acts on the points x[begin + j * dimension + c] alike for all coordinates c, and on nothing
-  /// else: Z for points (n x n') and the offset (n x dimension). False otherwise.
+  /// If Z acts on the points x[begin + j * dimension + c] alike for all coordinates c, and on
+  /// nothing else: Z for points (n x n') and the offset (n x dimension). False otherwise.
   bool ForPoints(int begin, int num_points, int dimension,
                  Eigen::SparseMatrix<double, Eigen::RowMajor>* z, Points* offset) const;
 

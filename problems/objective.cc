@@ -114,7 +114,8 @@ Status Objective::Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd* residuals,
   }
   SparseRows full(num_rows, problem_->num_variables());
   full.setFromTriplets(entries.begin(), entries.end());
-  *jacobian = problem_->elimination().trivial() ? full : SparseRows(full * problem_->elimination().z());
+  *jacobian =
+      problem_->elimination().trivial() ? full : SparseRows(full * problem_->elimination().z());
   return Status::kOk;
 }
 
@@ -167,7 +168,8 @@ std::vector<double> Objective::TermEnergies(const Eigen::VectorXd& x) const {
   std::vector<double> energies;
   for (const Problem::TermInstance& term : problem_->terms()) {
     double energy = 0.0;
-    const bool ok = term.family->Evaluate(all, 0, term.family->size(), &energy, nullptr) == Status::kOk;
+    const bool ok =
+        term.family->Evaluate(all, 0, term.family->size(), &energy, nullptr) == Status::kOk;
     energies.push_back(ok ? energy : std::numeric_limits<double>::quiet_NaN());
   }
   return energies;

@@ -10,9 +10,10 @@
 
 namespace batten {
 
-/// The evaluator of a problem's E that every solver uses: in the free variables that remain after the
-/// problem's linear constraints are eliminated, counted by a monitor. Nothing is evaluated before it
-/// is asked for; what is compiled on the way (rows, normal band) is compiled at its first use.
+/// The evaluator of a problem's E that every solver uses: in the free variables that remain after
+/// the problem's linear constraints are eliminated, counted by a monitor. Nothing is evaluated
+/// before it is asked for; what is compiled on the way (rows, normal band) is compiled at its first
+/// use.
 class Objective {
  public:
   struct Options {

@@ -31,8 +31,8 @@ Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* conte
   const CurveView& view = *objective->curve_view();
   const NormalBand& band = view.normal_band();
   // Forward error of normal equations: at most about the condition number of N times eps (Higham,
-  // Accuracy and Stability, sec. 20.4). 1e-8 of the data's size is what the solvers are to agree to;
-  // where no digit is sure, the normal equations are not the way.
+  // Accuracy and Stability, sec. 20.4). 1e-8 of the data's size is what the solvers are to agree
+  // to; where no digit is sure, the normal equations are not the way.
   constexpr double kDigitsLost = 1e-8;
   constexpr double kNoDigit = 0.1;
   BandedCholesky factor;

@@ -24,8 +24,7 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
   const Status status = context->Iterate(*x);
   if (status != Status::kOk) return {context->stop_reason(), ""};
   const CurveView& view = *objective->curve_view();
-  const Points start =
-      Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
+  const Points start = Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
   const NearestSolution solution = SolveNearest(view.row_source(), start);
   if (solution.method.rfind("none", 0) == 0 || !solution.control_points.allFinite()) {
     return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
@@ -38,8 +37,8 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
           "the minimum is not unique: " +
               (solution.rank < 0 ? std::string("rank below ")
                                  : "rank " + std::to_string(solution.rank) + " of ") +
-              std::to_string(view.num_points()) +
-              "; this is the solution nearest to the start (" + solution.method + ")"};
+              std::to_string(view.num_points()) + "; this is the solution nearest to the start (" +
+              solution.method + ")"};
 }
 
 }  // namespace batten

@@ -32,8 +32,8 @@ std::optional<Outcome> CgSolver::DoStart(Eigen::VectorXd* x) {
 }
 
 std::optional<Outcome> CgSolver::DoStep(Eigen::VectorXd* x) {
-  // The recursive residual leaves the true one by rounding of its largest past size. After ten digits
-  // it is computed afresh, and the directions start anew.
+  // The recursive residual leaves the true one by rounding of its largest past size. After ten
+  // digits it is computed afresh, and the directions start anew.
   constexpr double kRefreshAt = 1e-20;
   if (squared_norm_ <= kRefreshAt * refreshed_squared_) {
     const Status status = Refresh(*x);

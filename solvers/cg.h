@@ -20,11 +20,11 @@ class CgSolver final : public Stepper {
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   Status Refresh(const Eigen::VectorXd& x);
 
-  Eigen::VectorXd residual_;   // A'(Q - A P), by recursion
+  Eigen::VectorXd residual_;  // A'(Q - A P), by recursion
   Eigen::VectorXd direction_;
   Eigen::VectorXd product_;
-  double squared_norm_ = 0.0;      // of residual_
-  double refreshed_squared_ = 0.0; // of residual_ when it was last computed afresh
+  double squared_norm_ = 0.0;       // of residual_
+  double refreshed_squared_ = 0.0;  // of residual_ when it was last computed afresh
 };
 
 }  // namespace batten

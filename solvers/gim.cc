@@ -73,7 +73,8 @@ std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
 SolverInfo GimSolver::ClassInfo() {
   SolverInfo info;
   info.name = "gim";
-  info.summary = "geometric iteration (PIA): each control point moves by the residual paired with it";
+  info.summary =
+      "geometric iteration (PIA): each control point moves by the residual paired with it";
   info.source = "Qi et al. 1975; de Boor 1979; Lin, Wang & Dong 2004; Lin, Bao & Wang 2005";
   info.needs = {"compiled rows", "only the interpolation term without weights",
                 "as many control points as points"};
@@ -87,10 +88,10 @@ std::string GimSolver::WhyUnsupported(const Objective& objective) const {
   if (!why.empty()) return why;
   const Problem& problem = objective.problem();
   const CurveFit* fit = problem.curve_fit();
-  if (fit == nullptr || problem.terms().size() != 1 ||
-      problem.terms()[0].family->weight() != 1.0 || fit->data().weights.has_value() ||
-      problem.terms()[0].name.rfind("interpolation", 0) != 0) {
-    return "gim moves control points by residuals of the interpolation term alone, without weights; "
+  if (fit == nullptr || problem.terms().size() != 1 || problem.terms()[0].family->weight() != 1.0 ||
+      fit->data().weights.has_value() || problem.terms()[0].name.rfind("interpolation", 0) != 0) {
+    return "gim moves control points by residuals of the interpolation term alone, without "
+           "weights; "
            "use lspia";
   }
   if (!problem.elimination().trivial()) return "gim takes no constraints; use lspia";
@@ -109,9 +110,8 @@ std::optional<Outcome> GimSolver::DoStart(Eigen::VectorXd* /*x*/) {
     parameters[static_cast<std::size_t>(row)] = sites.parameters[sites.item(row)];
   }
   control_point_of_row_ = PairWithControlPoints(fit.basis(), parameters);
-  context()->OffTheClock([this] {
-    context()->Note("spectral radius of I - A", NumberText(SpectralRadius()));
-  });
+  context()->OffTheClock(
+      [this] { context()->Note("spectral radius of I - A", NumberText(SpectralRadius())); });
   return std::nullopt;
 }
 
@@ -152,8 +152,8 @@ double GimSolver::SpectralRadius() const {
   if (n <= kLargestDense) {
     Eigen::MatrixXd matrix(n, n);
     for (int k = 0; k < n; ++k) {
-      const Eigen::VectorXd column =
-          apply(Eigen::VectorXd::Unit(static_cast<Eigen::Index>(n) * d, static_cast<Eigen::Index>(k) * d));
+      const Eigen::VectorXd column = apply(Eigen::VectorXd::Unit(static_cast<Eigen::Index>(n) * d,
+                                                                 static_cast<Eigen::Index>(k) * d));
       for (int j = 0; j < n; ++j) matrix(j, k) = column[static_cast<Eigen::Index>(j) * d];
     }
     return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();

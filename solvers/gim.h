@@ -27,8 +27,8 @@ class GimSolver final : public FixedPoint {
 };
 
 /// Pairs data points with control points: in the order of the parameters, and of the Greville
-/// abscissae; on closed curves with the rotation that brings them closest. result[row] = j; rows are
-/// numbered in the order of their parameters' spans.
+/// abscissae; on closed curves with the rotation that brings them closest. result[row] = j; rows
+/// are numbered in the order of their parameters' spans.
 std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
                                        const std::vector<double>& parameters_by_row);
 

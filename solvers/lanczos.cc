@@ -13,9 +13,8 @@ void ReadRitzValues(const std::vector<double>& diagonal, const std::vector<doubl
                     Spectrum* spectrum) {
   const auto k = static_cast<Eigen::Index>(diagonal.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(
-      Eigen::Map<const Eigen::VectorXd>(diagonal.data(), k),
-      Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), k - 1));
+  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), k),
+                                Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), k - 1));
   const double beta = off_diagonal.back();
   spectrum->smallest = solver.eigenvalues()[0];
   spectrum->smallest_error = beta * std::abs(solver.eigenvectors()(k - 1, 0));
@@ -66,9 +65,7 @@ Status EstimateSpectrum(
 Eigen::VectorXd RandomStart(Eigen::Index size, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   // Not std::uniform_real_distribution, whose values differ between C++ libraries.
-  const auto uniform = [&random] {
-    return static_cast<double>(random() >> 11) * 0x1.0p-52 - 1.0;
-  };
+  const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1.0p-52 - 1.0; };
   Eigen::VectorXd start(size);
   for (Eigen::Index i = 0; i < size; ++i) start[i] = uniform();
   return start;

@@ -14,8 +14,13 @@ class EvaluatedLine : public LineFunction {
   EvaluatedLine(Objective* objective, const Eigen::VectorXd& x, const Eigen::VectorXd& direction,
                 double energy, Eigen::VectorXd* next_x, Eigen::VectorXd* next_gradient,
                 double* next_energy)
-      : objective_(objective), x_(x), direction_(direction), energy_(energy), next_x_(next_x),
-        next_gradient_(next_gradient), next_energy_(next_energy) {}
+      : objective_(objective),
+        x_(x),
+        direction_(direction),
+        energy_(energy),
+        next_x_(next_x),
+        next_gradient_(next_gradient),
+        next_energy_(next_energy) {}
 
   Status Evaluate(LinePoint* point) override {
     last_step_ = point->step;
@@ -60,14 +65,16 @@ SolverInfo LbfgsSolver::ClassInfo() {
   SolverInfo info;
   info.name = "lbfgs";
   info.summary = "limited-memory BFGS with a Wolfe line search, our own";
-  info.source = "Liu & Nocedal, Math. Programming 45, 1989; Liu et al., Accelerated Geometric "
-                "Iteration Method, 2016; Hager & Zhang, SIAM J. Optim. 16, 2005";
+  info.source =
+      "Liu & Nocedal, Math. Programming 45, 1989; Liu et al., Accelerated Geometric "
+      "Iteration Method, 2016; Hager & Zhang, SIAM J. Optim. 16, 2005";
   info.needs = {};
   info.supports = {"any objective", "linear constraints", "losses", "weights"};
   info.native_rule = NativeRule::kGradient;
   info.options = {
       OptionInfo::Integer("memory", 10, 3, 20, "pairs kept"),
-      OptionInfo::Word("wolfe", "weak", {"weak", "strong"}, "curvature condition of the line search"),
+      OptionInfo::Word("wolfe", "weak", {"weak", "strong"},
+                       "curvature condition of the line search"),
       OptionInfo::Real("c1", 1e-4, 1e-12, 0.4, "sufficient decrease"),
       OptionInfo::Real("c2", 0.9, 0.5, 0.999, "curvature"),
   };

@@ -7,8 +7,8 @@
 
 namespace batten {
 
-/// Limited-memory BFGS for any objective. On a quadratic the line is known exactly from one product,
-/// and differences of E come from it. docs/solvers/lbfgs.md.
+/// Limited-memory BFGS for any objective. On a quadratic the line is known exactly from one
+/// product, and differences of E come from it. docs/solvers/lbfgs.md.
 class LbfgsSolver final : public Stepper {
  public:
   static SolverInfo ClassInfo();
@@ -29,7 +29,7 @@ class LbfgsSolver final : public Stepper {
   double energy_ = 0.0;  // not used on quadratics
   Eigen::VectorXd gradient_;
   Eigen::VectorXd direction_;
-  Eigen::VectorXd product_;        // Hessian times direction, on quadratics
+  Eigen::VectorXd product_;  // Hessian times direction, on quadratics
   Eigen::VectorXd next_x_;
   Eigen::VectorXd next_gradient_;
   double next_energy_ = 0.0;

@@ -64,9 +64,7 @@ class Bracket {
     if (!decreased && !approximately) return true;
     return options_.strong && p.slope > -options_.curvature * slope_at_zero_;
   }
-  bool TooShort(const LinePoint& p) const {
-    return p.slope < options_.curvature * slope_at_zero_;
-  }
+  bool TooShort(const LinePoint& p) const { return p.slope < options_.curvature * slope_at_zero_; }
 
   double Extrapolate(const LinePoint& before) const {
     // Between twice and ten times as far: the secant of the slopes where it points forward.
@@ -92,7 +90,7 @@ class Bracket {
 
   const WolfeOptions& options_;
   double slope_at_zero_;
-  LinePoint low_;   // decreases enough, slope still steep; the origin at first
+  LinePoint low_;  // decreases enough, slope still steep; the origin at first
   LinePoint high_;
   bool has_high_ = false;
   bool high_is_finite_ = false;

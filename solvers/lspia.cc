@@ -34,8 +34,8 @@ std::string LspiaSolver::WhyUnsupported(const Objective& objective) const {
 std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
   CurveView& view = *objective()->curve_view();
   const int d = view.dimension();
-  // Row sums of |N| are the column sums of A where A's rows are no less than 0 and sum to 1, and bound
-  // the spectrum of N, or of the diagonally scaled N by 1, where they are not (Gershgorin).
+  // Row sums of |N| are the column sums of A where A's rows are no less than 0 and sum to 1, and
+  // bound the spectrum of N, or of the diagonally scaled N by 1, where they are not (Gershgorin).
   const std::vector<double> sums = view.normal_band().AbsoluteRowSums();
   double largest = 0.0;
   for (const double sum : sums) largest = std::max(largest, sum);
@@ -58,7 +58,8 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
   const auto multiply = [&view](const Eigen::VectorXd& v, Eigen::VectorXd* product) {
     return view.NormalProduct(v, product);
   };
-  // From N times a random vector, so that the null space, where nothing has to converge, is left out.
+  // From N times a random vector, so that the null space, where nothing has to converge, is left
+  // out.
   Eigen::VectorXd start;
   Status status = multiply(RandomStart(x.size(), context()->seed()), &start);
   constexpr double kRelativeError = 1e-3;

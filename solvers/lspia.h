@@ -5,8 +5,8 @@
 
 namespace batten {
 
-/// Least-squares progressive-iterative approximation: P += mu A'(Q - A P), mu a number or a diagonal.
-/// docs/solvers/lspia.md.
+/// Least-squares progressive-iterative approximation: P += mu A'(Q - A P), mu a number or a
+/// diagonal. docs/solvers/lspia.md.
 class LspiaSolver final : public FixedPoint {
  public:
   static SolverInfo ClassInfo();
@@ -22,8 +22,8 @@ class LspiaSolver final : public FixedPoint {
 
   std::string step_rule_;
   double relaxation_;
-  Eigen::VectorXd step_;        // mu per variable
-  Eigen::VectorXd residual_;    // A'(Q - A P) at the last point mapped
+  Eigen::VectorXd step_;      // mu per variable
+  Eigen::VectorXd residual_;  // A'(Q - A P) at the last point mapped
   Eigen::VectorXd last_move_;
   int alternations_ = 0;
 };

@@ -12,13 +12,13 @@ namespace batten {
 
 enum class StopReason {
   kNotRun,
-  kSolved,            // a direct method has given its answer
-  kGradientSmall,     // |g| fell below its tolerance
-  kStepSmall,         // the largest control-point step fell below its tolerance (native rule)
-  kRoundingFloor,     // |g| is rounding noise
-  kNativeStop,        // the method's library ended the run by a rule of its own
-  kLineSearchEnded,   // no step along the last direction lowers E measurably
-  kStalled,           // it goes on, but no longer comes nearer
+  kSolved,           // a direct method has given its answer
+  kGradientSmall,    // |g| fell below its tolerance
+  kStepSmall,        // the largest control-point step fell below its tolerance (native rule)
+  kRoundingFloor,    // |g| is rounding noise
+  kNativeStop,       // the method's library ended the run by a rule of its own
+  kLineSearchEnded,  // no step along the last direction lowers E measurably
+  kStalled,          // it goes on, but no longer comes nearer
   kDiverged,
   kIterationLimit,
   kTimeLimit,

@@ -67,7 +67,8 @@ std::string WhyNoCurveView(const Objective& objective, const std::string& solver
   }
   for (const Problem::TermInstance& term : objective.problem().terms()) {
     if (term.family->rows() == nullptr) {
-      return solver_name + " needs terms that are affine, alike for all coordinates and without loss; " +
+      return solver_name +
+             " needs terms that are affine, alike for all coordinates and without loss; " +
              term.name + " is not; use lbfgs";
     }
   }

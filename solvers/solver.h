@@ -21,12 +21,12 @@ enum class NativeRule { kDirect, kStep, kGradient };
 
 struct SolverInfo {
   std::string name;
-  std::string summary;               ///< One line.
+  std::string summary;  ///< One line.
   std::string source;
-  std::vector<std::string> needs;    ///< "compiled rows", "as many control points as points".
-  std::vector<std::string> supports; ///< "bounds", "linear constraints", "losses", "weights".
+  std::vector<std::string> needs;     ///< "compiled rows", "as many control points as points".
+  std::vector<std::string> supports;  ///< "bounds", "linear constraints", "losses", "weights".
   NativeRule native_rule = NativeRule::kGradient;
-  bool wraps_solver = false;         ///< Written NAME:BASE.
+  bool wraps_solver = false;  ///< Written NAME:BASE.
   std::vector<OptionInfo> options;
 };
 
@@ -37,9 +37,9 @@ class Solver {
   virtual SolverInfo Info() const = 0;
   /// Empty: `objective` can be solved. Otherwise one sentence, shown as "skipped: ...".
   virtual std::string WhyUnsupported(const Objective& objective) const = 0;
-  /// Lowers E from *x and leaves the best point there. Calls context->Iterate(*x) once after set-up,
-  /// then after each iteration; neither prints, times nor stops by itself. The public call checks
-  /// WhyUnsupported, sizes and finiteness of the start.
+  /// Lowers E from *x and leaves the best point there. Calls context->Iterate(*x) once after
+  /// set-up, then after each iteration; neither prints, times nor stops by itself. The public call
+  /// checks WhyUnsupported, sizes and finiteness of the start.
   Outcome Minimize(Objective* objective, RunContext* context, Eigen::VectorXd* x);
 
  private:

@@ -4,9 +4,9 @@
 
 #include "solvers/banded_cholesky.h"
 #include "solvers/banded_qr.h"
-#include "solvers/cg.h"
 #include "solvers/ceres_lbfgs.h"
 #include "solvers/ceres_lm.h"
+#include "solvers/cg.h"
 #include "solvers/gim.h"
 #include "solvers/lbfgs.h"
 #include "solvers/lspia.h"
@@ -16,14 +16,10 @@ namespace {
 
 // The built-in solvers: one line each.
 constexpr SolverEntry (*kBuiltInSolvers[])() = {
-    &MakeSolverEntry<BandedQrSolver>,
-    &MakeSolverEntry<BandedCholeskySolver>,
-    &MakeSolverEntry<GimSolver>,
-    &MakeSolverEntry<LspiaSolver>,
-    &MakeSolverEntry<CgSolver>,
-    &MakeSolverEntry<LbfgsSolver>,
-    &MakeSolverEntry<CeresLbfgsSolver>,
-    &MakeSolverEntry<CeresLmSolver>,
+    &MakeSolverEntry<BandedQrSolver>,   &MakeSolverEntry<BandedCholeskySolver>,
+    &MakeSolverEntry<GimSolver>,        &MakeSolverEntry<LspiaSolver>,
+    &MakeSolverEntry<CgSolver>,         &MakeSolverEntry<LbfgsSolver>,
+    &MakeSolverEntry<CeresLbfgsSolver>, &MakeSolverEntry<CeresLmSolver>,
 };
 
 }  // namespace

@@ -22,8 +22,7 @@ struct SolverEntry {
 /// The row of a solver class with `static SolverInfo ClassInfo()` and a constructor from options.
 template <typename SolverClass>
 SolverEntry MakeSolverEntry() {
-  return {SolverClass::ClassInfo(),
-          [](const OptionValues& options, std::unique_ptr<Solver>) {
+  return {SolverClass::ClassInfo(), [](const OptionValues& options, std::unique_ptr<Solver>) {
             return std::make_unique<SolverClass>(options);
           }};
 }

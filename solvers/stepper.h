@@ -7,15 +7,16 @@
 
 namespace batten {
 
-/// A solver that is a loop of like steps. Several can be stepped in turn (lockstep), and a run can be
-/// left and taken up again from State().
+/// A solver that is a loop of like steps. Several can be stepped in turn (lockstep), and a run can
+/// be left and taken up again from State().
 class Stepper : public Solver {
  public:
   /// Set-up at *x, which it may move. An outcome ends the run here.
   std::optional<Outcome> Start(Objective* objective, RunContext* context, Eigen::VectorXd* x);
   /// One iteration from *x.
   std::optional<Outcome> Step(Eigen::VectorXd* x) { return DoStep(x); }
-  /// What the next Step needs beside x, as numbers; set back by Restore after a Start at the same x.
+  /// What the next Step needs beside x, as numbers; set back by Restore after a Start at the same
+  /// x.
   virtual std::vector<double> State() const { return {}; }
   virtual void Restore(const std::vector<double>& /*state*/) {}
 

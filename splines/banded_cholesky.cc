@@ -107,9 +107,8 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
   Pending pending = FirstPending(matrix.band());
   factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
   border_.resize(static_cast<std::size_t>(num_swept_) * num_border_);
-  const bool swept = WithFixedShape(width_, 1, [&](auto width, auto) {
-    return Sweep<width>(matrix.band(), &pending);
-  });
+  const bool swept = WithFixedShape(
+      width_, 1, [&](auto width, auto) { return Sweep<width>(matrix.band(), &pending); });
   if (!swept) return false;
   FillDense(matrix, pending);
   std::vector<double> limits(diagonal.end() - dense_size, diagonal.end());
@@ -138,7 +137,8 @@ BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& 
 }
 
 template <int kWidth>
-[[gnu::always_inline]] inline bool BandedCholesky::SweepBorder(int j, const double* u, Pending* pending) {
+[[gnu::always_inline]] inline bool BandedCholesky::SweepBorder(int j, const double* u,
+                                                               Pending* pending) {
   const int border = kWidth > 0 ? kWidth - 1 : num_border_;
   double* const row = pending->border.data();
   double* const corner = pending->corner.data();
@@ -167,7 +167,7 @@ template <int kWidth>
 bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
   const int width = kWidth > 0 ? kWidth : width_;
   // What is left of rows j.., row i from its diagonal to column j + width - 1; the first of them.
-  auto window = ZeroScratch<kWidth < 0 ? -1 : kWidth * kWidth>(width * width);
+  auto window = ZeroScratch < kWidth < 0 ? -1 : kWidth * kWidth > (width * width);
   auto row = ZeroScratch<kWidth>(width);
 #pragma GCC unroll 8
   for (int i = 0; i < width; ++i) {
@@ -193,8 +193,7 @@ bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
     for (int i = 1; i < width; ++i) {
 #pragma GCC unroll 8
       for (int k = i; k < width; ++k) {
-        window[(i - 1) * width + k - i] =
-            window[i * width + k - i] - row[i] * row[k] * inverse;
+        window[(i - 1) * width + k - i] = window[i * width + k - i] - row[i] * row[k] * inverse;
       }
       u[i] = row[i] * inverse;
     }
@@ -240,7 +239,7 @@ void BandedCholesky::SolveForward(int begin, int end, double* x, int dimension) 
   const int width = kWidth > 0 ? kWidth : width_;
   const int d = kWidth > 0 ? kDimension : dimension;
   double* const border = x + static_cast<std::size_t>(n_ - num_border_) * d;
-  auto sum = ZeroScratch<kWidth < 0 ? -1 : kWidth * kDimension>(width * d);
+  auto sum = ZeroScratch < kWidth < 0 ? -1 : kWidth * kDimension > (width * d);
   for (int j = begin; j < end; ++j) {
     const double* u = factor_.data() + static_cast<std::size_t>(j) * width;
     double* const near = x + static_cast<std::size_t>(j) * d;
@@ -261,7 +260,7 @@ void BandedCholesky::SolveBackward(int begin, int end, double* x, int dimension)
   const int width = kWidth > 0 ? kWidth : width_;
   const int d = kWidth > 0 ? kDimension : dimension;
   const double* const border = x + static_cast<std::size_t>(n_ - num_border_) * d;
-  auto known = ZeroScratch<kWidth < 0 ? -1 : kWidth * kDimension>(width * d);
+  auto known = ZeroScratch < kWidth < 0 ? -1 : kWidth * kDimension > (width * d);
   for (int k = 0; kBordered && k < (width - 1) * d; ++k) known[k] = border[k];
   for (int j = end - 1; j >= begin; --j) {
     const double* u = factor_.data() + static_cast<std::size_t>(j) * width;

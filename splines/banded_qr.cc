@@ -82,8 +82,9 @@ void BandedQr::FoldPending() {
   if (num_pending_ == 0) return;
   const bool wraps = pending_column_ + width_ > shape_.num_columns;
   const int first_border = shape_.num_columns - num_border_;
-  double* triangle = wraps ? wrapped_.data() + (pending_column_ - first_border) * row_size_
-                           : triangle_.data() + static_cast<std::size_t>(pending_column_) * row_size_;
+  double* triangle = wraps
+                         ? wrapped_.data() + (pending_column_ - first_border) * row_size_
+                         : triangle_.data() + static_cast<std::size_t>(pending_column_) * row_size_;
   const PackedRows rows = {AsPacks(pending_.data()), num_pending_ / kPackLanes, kFoldStride};
   residual_ += WithFixedShape(width_, shape_.dimension, [&](auto width, auto dimension) {
     return FoldRows<width, dimension>(width_, shape_.dimension, rows, triangle, row_size_);
@@ -114,7 +115,8 @@ void BandedQr::FoldWrapped() {
   RowBuffer wrapped(size, size + d);
   for (int i = 0; i < size; ++i) {
     const double* row = wrapped_.data() + i * row_size_;
-    for (int k = 0; k < width_ && i + k < size; ++k) wrapped(i, (i + k + num_border_) % size) = row[k];
+    for (int k = 0; k < width_ && i + k < size; ++k)
+      wrapped(i, (i + k + num_border_) % size) = row[k];
     for (int c = 0; c < d; ++c) wrapped(i, size + c) = row[width_ + c];
   }
   std::vector<double> reordered(static_cast<std::size_t>(size) * (size + d), 0.0);
@@ -183,9 +185,8 @@ void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last)
 
 double BandedQr::DiagonalEntry(int j) const {
   const int size = 2 * num_border_;
-  return num_border_ > 0 && j >= num_swept_
-             ? dense_[(j - num_swept_) * (size + shape_.dimension)]
-             : triangle_[static_cast<std::size_t>(j) * row_size_];
+  return num_border_ > 0 && j >= num_swept_ ? dense_[(j - num_swept_) * (size + shape_.dimension)]
+                                            : triangle_[static_cast<std::size_t>(j) * row_size_];
 }
 
 template <typename Visitor>

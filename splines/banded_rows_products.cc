@@ -60,8 +60,8 @@ class CompensatedSum {
 
 /// One coordinate of A P - Q on the block's rows, or of A P without right-hand sides.
 template <bool kWithData>
-void ResidualOfCoordinate(const RowShape& shape, const RowBlock& block, const double* points,
-                          int c, RowPack* residual) {
+void ResidualOfCoordinate(const RowShape& shape, const RowBlock& block, const double* points, int c,
+                          RowPack* residual) {
   const int packs = block.stride / kPackLanes;
   const RowPack* q = AsPacks(block.right_hand_sides) + c * packs;
   for (int i = 0; i < packs; ++i) residual[i] = kWithData ? -q[i] : RowPack{};
@@ -134,8 +134,8 @@ double EvaluateAll(const BandedRows& rows, const double* points, double* gradien
   for (std::size_t index = 0; index < rows.num_blocks(); ++index) {
     const RowBlock block = rows.BlockAndPrefetch(index);
     const double* near = window.Gather(points, block.first_column);
-    energy.Add(EvaluateBlock<kWidth, kDimension, kGradient, kWithData>(shape, block, near,
-                                                                       part.data()));
+    energy.Add(
+        EvaluateBlock<kWidth, kDimension, kGradient, kWithData>(shape, block, near, part.data()));
     if (kGradient) window.Add(part.data(), block.first_column, gradient);
   }
   return energy.value();

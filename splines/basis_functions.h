@@ -7,8 +7,8 @@ namespace batten {
 
 /// One span of a basis, prepared for many parameters: its knots and the reciprocals of their
 /// differences, so that a parameter costs no division. Cox-de Boor recursion in the order of
-/// Piegl & Tiller, algorithm A2.2. kDegree >= 0 fixes the degree at compile time, -1 takes `degree`.
-/// Constant is what knots are kept as: a double, or a pack of equal ones.
+/// Piegl & Tiller, algorithm A2.2. kDegree >= 0 fixes the degree at compile time, -1 takes
+/// `degree`. Constant is what knots are kept as: a double, or a pack of equal ones.
 template <int kDegree = -1, typename Constant = double>
 class SpanBasis {
  public:

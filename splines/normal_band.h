@@ -26,7 +26,7 @@ class NormalBand : public RowConsumer {
   bool cyclic() const { return shape_.cyclic; }
   const std::vector<double>& band() const { return band_; }
   std::vector<double>& band() { return band_; }
-  const Points& right_hand_side() const { return right_hand_side_; }  // B, n x d
+  const Points& right_hand_side() const { return right_hand_side_; }     // B, n x d
   double squared_norm_of_data() const { return squared_norm_of_data_; }  // ||Q||^2
 
   /// product = N V, n x d row-major each; must not overlap.

@@ -5,13 +5,14 @@
 
 namespace batten {
 
-/// Rows of a linear least-squares problem in the control points, all in one span's columns and alike
-/// for all coordinates: residual of row i, coordinate c =
-///   sum_j coefficients[j * stride + i] * P(first_column + j, c) - right_hand_sides[c * stride + i],
+/// Rows of a linear least-squares problem in the control points, all in one span's columns and
+/// alike for all coordinates: residual of row i, coordinate c =
+///   sum_j coefficients[j * stride + i] * P(first_column + j, c) - right_hand_sides[c * stride +
+///   i],
 /// j = 0..width-1, columns taken modulo num_columns where the matrix is cyclic (so that with
 /// num_columns < width one column may stand several times in a row: its coefficients add).
-/// Both arrays are aligned to 32 bytes, stride is a multiple of kRowPack, and the rows from num_rows
-/// to stride are zero: loops run over whole packs.
+/// Both arrays are aligned to 32 bytes, stride is a multiple of kRowPack, and the rows from
+/// num_rows to stride are zero: loops run over whole packs.
 inline constexpr int kRowPack = 4;
 inline constexpr int kMaxRowsPerBlock = 64;
 

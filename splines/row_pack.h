@@ -23,7 +23,8 @@ inline RowPack* AsPacks(double* aligned) { return reinterpret_cast<RowPack*>(ali
 inline RowPack Broadcast(double value) { return RowPack{value, value}; }
 inline double SumOfLanes(RowPack pack) { return pack[0] + pack[1]; }
 
-/// a'b over an even number of packs (any kRowPack has), in two sums: one alone would wait for itself.
+/// a'b over an even number of packs (any kRowPack has), in two sums: one alone would wait for
+/// itself.
 inline double DotPacks(const RowPack* a, const RowPack* b, int packs) {
   RowPack even = {};
   RowPack odd = {};

@@ -1,5 +1,5 @@
-// Fits a closed cubic to points on an ellipse with two solvers and compares their ends: what a program
-// outside Batten's tree needs, from the installed package alone.
+// Fits a closed cubic to points on an ellipse with two solvers and compares their ends: what a
+// program outside Batten's tree needs, from the installed package alone.
 
 #include <cmath>
 #include <cstdio>

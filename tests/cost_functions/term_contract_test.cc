@@ -33,8 +33,11 @@ class EveryTerm : public ::testing::TestWithParam<std::string> {
 
   /// The term's defaults, each word of its own options, weights and losses.
   std::vector<std::string> OptionTexts() const {
-    std::vector<std::string> texts = {"", "/weight=0.75", "/weight=1.5/loss=huber/loss_scale=0.6",
-                                      "/loss=cauchy/loss_scale=0.4", "/loss=tukey/loss_scale=1.1",
+    std::vector<std::string> texts = {"",
+                                      "/weight=0.75",
+                                      "/weight=1.5/loss=huber/loss_scale=0.6",
+                                      "/loss=cauchy/loss_scale=0.4",
+                                      "/loss=tukey/loss_scale=1.1",
                                       "/loss=soft_l1/loss_scale=0.7"};
     for (const OptionInfo& option : term().Info().options) {
       for (const std::string& word : option.words) {
@@ -56,8 +59,8 @@ class EveryTerm : public ::testing::TestWithParam<std::string> {
           const int dimension = 1 + num_families % kMaxDimension;
           const ExampleFit fit(MakeBasis(kind, n, &random_), dimension, 11, n % 2 == 0, &random_);
           for (const std::string& options : OptionTexts()) {
-            SCOPED_TRACE(kind.Name() + " n = " + std::to_string(n) + " d = " +
-                         std::to_string(dimension) + " " + options);
+            SCOPED_TRACE(kind.Name() + " n = " + std::to_string(n) +
+                         " d = " + std::to_string(dimension) + " " + options);
             const auto family = Make(fit.setting, options);
             if (family == nullptr) continue;
             ++num_families;
@@ -121,8 +124,8 @@ TEST_P(EveryTerm, GradientIsThatOfItsResiduals) {
       double rho[3] = {r.squaredNorm(), 1.0, 0.0};
       if (family.loss() != nullptr) family.loss()->Evaluate(r.squaredNorm(), rho);
       energy += family.weight() * rho[0];
-      expected += 2.0 * family.weight() * rho[1] *
-                  jacobian.middleRows(block * k, k).transpose() * r;
+      expected +=
+          2.0 * family.weight() * rho[1] * jacobian.middleRows(block * k, k).transpose() * r;
     }
     const double tolerance = 256 * kEpsilon * (1.0 + energy + expected.norm());
     EXPECT_NEAR(EnergyAt(family, x), energy, tolerance);
@@ -141,17 +144,17 @@ TEST_P(EveryTerm, HasRowsWhereItSaysThatItIsAffine) {
 }
 
 TEST_P(EveryTerm, WeightIsAFactorOfItsEnergy) {
-  ForEachFamily([this](const ExampleFit& fit, const BlockFamily& family,
-                       const std::string& options) {
-    if (options.find("weight") != std::string::npos) return;
-    const auto heavier = Make(fit.setting, options + "/weight=4");
-    const auto nothing = Make(fit.setting, options + "/weight=0");
-    const Eigen::VectorXd x = fit.RandomVariables(&random_);
-    EXPECT_EQ(EnergyAt(*heavier, x), 4.0 * EnergyAt(family, x));
-    EXPECT_EQ(GradientAt(*heavier, x), 4.0 * GradientAt(family, x));
-    EXPECT_EQ(EnergyAt(*nothing, x), 0.0);
-    EXPECT_TRUE(GradientAt(*nothing, x).isZero(0.0));
-  });
+  ForEachFamily(
+      [this](const ExampleFit& fit, const BlockFamily& family, const std::string& options) {
+        if (options.find("weight") != std::string::npos) return;
+        const auto heavier = Make(fit.setting, options + "/weight=4");
+        const auto nothing = Make(fit.setting, options + "/weight=0");
+        const Eigen::VectorXd x = fit.RandomVariables(&random_);
+        EXPECT_EQ(EnergyAt(*heavier, x), 4.0 * EnergyAt(family, x));
+        EXPECT_EQ(GradientAt(*heavier, x), 4.0 * GradientAt(family, x));
+        EXPECT_EQ(EnergyAt(*nothing, x), 0.0);
+        EXPECT_TRUE(GradientAt(*nothing, x).isZero(0.0));
+      });
 }
 
 /// E, its gradient and all blocks one by one, through a ceres::Problem.
@@ -207,8 +210,7 @@ TEST_P(EveryTerm, BindsTheVariablesItDependsOn) {
     for (int block = 0; block < family.size(); ++block) {
       family.Bind(x, block, &offsets, &sizes);
       ASSERT_EQ(offsets.size(), sizes.size());
-      Eigen::RowVectorXd outside =
-          jacobian.middleRows(block * k, k).cwiseAbs().colwise().sum();
+      Eigen::RowVectorXd outside = jacobian.middleRows(block * k, k).cwiseAbs().colwise().sum();
       for (std::size_t g = 0; g < offsets.size(); ++g) {
         ASSERT_GE(offsets[g], 0);
         ASSERT_LE(offsets[g] + sizes[g], x.size());

@@ -91,20 +91,21 @@ std::vector<Change> Changes(double size) {
   const double far = 1e6 * size;
   return {
       {"AsTheyAre", [](FixedFit*) {}, [](const Points& points) { return points; }},
-      {"MovedByAMillionSizes",
-       [far](FixedFit* fit) { fit->data.points.array() += far; },
+      {"MovedByAMillionSizes", [far](FixedFit* fit) { fit->data.points.array() += far; },
        [far](const Points& points) { return Points(points.array() + far); }},
       Scaled("ScaledDown", 1e-6),
       Scaled("ScaledUp", 1e6),
       {"Rotated", [](FixedFit* fit) { fit->data.points = Rotated(fit->data.points); }, Rotated},
       {"Reversed", Reverse, ReversedAnswer},
-      {"ShiftedWithTheirKnots", ShiftDataWithTheirKnots, [](const Points& points) { return points; }},
+      {"ShiftedWithTheirKnots", ShiftDataWithTheirKnots,
+       [](const Points& points) { return points; }},
   };
 }
 
 class Agreement : public ::testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(Outlines, Agreement, ::testing::Values("rhino", "squirrel", "dolphin", "cat"),
+INSTANTIATE_TEST_SUITE_P(Outlines, Agreement,
+                         ::testing::Values("rhino", "squirrel", "dolphin", "cat"),
                          [](const auto& outline) { return outline.param; });
 
 /// Run to the floor, or to where its own search ends; not to a limit.
@@ -250,11 +251,13 @@ TEST_P(Agreement, EnergyAlongALineIsTheExactDifference) {
   const auto problem = LoadCatalogueProblem(GetParam());
   Objective objective(problem.get(), nullptr);
   ASSERT_TRUE(objective.is_quadratic());
-  const Eigen::VectorXd x = RunSolver(*problem, "lspia", [] {
-    RunSpec spec;
-    spec.max_iterations = 20;
-    return spec;
-  }()).x;
+  const Eigen::VectorXd x = RunSolver(*problem, "lspia",
+                                      [] {
+                                        RunSpec spec;
+                                        spec.max_iterations = 20;
+                                        return spec;
+                                      }())
+                                .x;
   Eigen::VectorXd gradient, product;
   ASSERT_EQ(objective.Gradient(x, &gradient), Status::kOk);
   const Eigen::VectorXd direction = -gradient;
@@ -272,7 +275,8 @@ TEST_P(Agreement, EnergyAlongALineIsTheExactDifference) {
     if (step > 1e-13) continue;
     double after = 0.0;
     ASSERT_EQ(objective.Energy(x + step * direction, &after), Status::kOk);
-    EXPECT_GT(std::abs((after - energy) / exact - 1.0), 1e-3) << "a difference of energies is noise";
+    EXPECT_GT(std::abs((after - energy) / exact - 1.0), 1e-3)
+        << "a difference of energies is noise";
   }
 }
 

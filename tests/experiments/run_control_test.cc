@@ -40,9 +40,7 @@ RunResult RunScript(const Problem& problem, const ScriptedSolver::Script& script
   return result;
 }
 
-void Sleep(double seconds) {
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-}
+void Sleep(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 /// Works, and does not only wait, for some CPU time.
 void BurnCpu(double seconds) {

@@ -114,7 +114,8 @@ TEST(Run, CountsNeverFallAndEndAsInTheResult) {
       EXPECT_LE(result.trace[k - 1].cpu_seconds, result.trace[k].cpu_seconds);
     }
     EXPECT_LE(result.counts.distinct_points,
-              result.counts.energy_calls + result.counts.gradient_calls) << solver;
+              result.counts.energy_calls + result.counts.gradient_calls)
+        << solver;
   }
 }
 
@@ -162,9 +163,9 @@ TEST(Run, ReachesTheSameMinimumWithoutCompilation) {
 
 TEST(Run, SeesTheRateOfTheGeometricIteration) {
   const auto problem = LoadCatalogueProblem("rhino_interpolation");
-  // The eigenvalues of I - A are 2/3 - (1 + cos a_k) / 3, a_k = 2 pi k / 100, and crowd below 2/3: all
-  // |k - 50| <= 5 lie within 2/3 (1 - 0.025). In some 50 iterations they cannot be told apart, and
-  // the mean rate lies among them, never above the radius.
+  // The eigenvalues of I - A are 2/3 - (1 + cos a_k) / 3, a_k = 2 pi k / 100, and crowd below 2/3:
+  // all |k - 50| <= 5 lie within 2/3 (1 - 0.025). In some 50 iterations they cannot be told apart,
+  // and the mean rate lies among them, never above the radius.
   const double rate = RunSolver(*problem, "gim").observed_rate;
   EXPECT_LT(rate, 2.0 / 3.0 + 1e-6);
   EXPECT_GT(rate, 2.0 / 3.0 * (1.0 - 0.025));

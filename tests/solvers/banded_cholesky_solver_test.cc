@@ -38,7 +38,9 @@ TEST(BandedCholeskySolver, NotesTheConditionOfTheNormalEquations) {
     const auto problem = FitWithWeakSpan(weight);
     const DenseFit dense(*problem);
     const Eigen::MatrixXd normal = dense.a.transpose() * dense.a;
-    const auto norm1 = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().colwise().sum().maxCoeff(); };
+    const auto norm1 = [](const Eigen::MatrixXd& m) {
+      return m.cwiseAbs().colwise().sum().maxCoeff();
+    };
     const double condition = norm1(normal) * norm1(normal.inverse());
     const double noted = NotedCondition(SolverTrial(*problem, "banded_cholesky"));
     // Hager's and Higham's estimate is a lower bound, seldom off by more than 3.

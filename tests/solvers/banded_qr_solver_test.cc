@@ -52,8 +52,8 @@ TEST(BandedQrSolver, NotesTheRatioOfItsDiagonal) {
   const auto problem = MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17));
   const SolverTrial trial(*problem, "banded_qr");
   double ratio = 0.0;
-  ASSERT_TRUE(ParseNumber(
-      trial.context.notes().at("smallest over largest diagonal entry of R"), &ratio));
+  ASSERT_TRUE(
+      ParseNumber(trial.context.notes().at("smallest over largest diagonal entry of R"), &ratio));
   // It bounds the reciprocal condition from above.
   EXPECT_GE(ratio, 1.0 / DenseFit(*problem).condition());
   EXPECT_LE(ratio, 1.0);

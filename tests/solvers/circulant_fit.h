@@ -8,8 +8,8 @@
 
 namespace batten {
 
-/// Points of a loop on a closed uniform cubic at uniform parameters, `per_span` of them in each span
-/// and the first at a knot. With one per span, A is circulant with rows 1/6, 2/3, 1/6, and its
+/// Points of a loop on a closed uniform cubic at uniform parameters, `per_span` of them in each
+/// span and the first at a knot. With one per span, A is circulant with rows 1/6, 2/3, 1/6, and its
 /// eigenvalues are (2 + cos(2 pi k / n)) / 3.
 inline std::unique_ptr<Problem> MakeCirculantFit(int num_control_points, int per_span,
                                                  int dimension = 2) {

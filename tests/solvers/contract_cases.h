@@ -79,9 +79,8 @@ struct DenseFit {
     a.resize(m, n);
     q.resize(m, d);
     for (Eigen::Index i = 0; i < m; ++i) {
-      const double weight =
-          problem.terms()[0].family->weight() *
-          (fit.data().weights.has_value() ? (*fit.data().weights)[i] : 1.0);
+      const double weight = problem.terms()[0].family->weight() *
+                            (fit.data().weights.has_value() ? (*fit.data().weights)[i] : 1.0);
       for (int j = 0; j < n; ++j) {
         a(i, j) = std::sqrt(weight) * Coefficient(fit.basis(), fit.parameters()[i], j);
       }
@@ -117,7 +116,9 @@ struct DenseFit {
     return Eigen::Map<const Eigen::VectorXd>(solution.data(), solution.size());
   }
   /// E(x) - E*.
-  double Gap(const Eigen::VectorXd& x) const { return (a * (PointsOf(x) - solution)).squaredNorm(); }
+  double Gap(const Eigen::VectorXd& x) const {
+    return (a * (PointsOf(x) - solution)).squaredNorm();
+  }
   double condition() const { return largest / smallest; }  ///< Of A, on its row space.
   /// How far x can be from the solution in what the rows see, when |g| is as given.
   double DistanceFor(double gradient_norm) const {
@@ -149,13 +150,13 @@ inline std::vector<ContractProblem> LeastSquaresProblems() {
     const auto seed = static_cast<unsigned>(problems.size());
     const int d = 1 + static_cast<int>(seed % 4);
     const bool weighted = seed % 3 != 1;
-    const char* ends = spec.closed                              ? "closed"
-                       : spec.ends == EndKnots::kFloating       ? "floating"
-                                                                : "clamped";
+    const char* ends = spec.closed                        ? "closed"
+                       : spec.ends == EndKnots::kFloating ? "floating"
+                                                          : "clamped";
     problems.push_back({std::string(ends) + " degree " + std::to_string(spec.degree) + ", " +
-                            ToString(spec.knots) + " knots, n = " +
-                            std::to_string(spec.control_points) + ", d = " + std::to_string(d) +
-                            (weighted ? ", weighted" : ""),
+                            ToString(spec.knots) +
+                            " knots, n = " + std::to_string(spec.control_points) +
+                            ", d = " + std::to_string(d) + (weighted ? ", weighted" : ""),
                         [=] {
                           DataSet data = MakeNoisyLoop(m, d, 100 + seed);
                           return MakeFit(weighted ? data : WithoutWeights(data), spec);
@@ -187,16 +188,15 @@ inline std::vector<ContractProblem> InterpolationProblems() {
   for (const int degree : {1, 2, 3, 5}) {
     for (const bool closed : {true, false}) {
       const int d = 1 + static_cast<int>(problems.size() % 4);
-      problems.push_back({std::string(closed ? "closed" : "clamped") + " degree " +
-                              std::to_string(degree) + " through all points, d = " +
-                              std::to_string(d),
-                          [=] {
-                            FitSpec spec = MakeSpec(degree, closed, 24);
-                            spec.knots = KnotRule::kAveraged;
-                            return MakeFit(
-                                WithoutWeights(MakeNoisyLoop(24, d, 200u + static_cast<unsigned>(degree))),
-                                spec);
-                          }});
+      problems.push_back(
+          {std::string(closed ? "closed" : "clamped") + " degree " + std::to_string(degree) +
+               " through all points, d = " + std::to_string(d),
+           [=] {
+             FitSpec spec = MakeSpec(degree, closed, 24);
+             spec.knots = KnotRule::kAveraged;
+             return MakeFit(
+                 WithoutWeights(MakeNoisyLoop(24, d, 200u + static_cast<unsigned>(degree))), spec);
+           }});
     }
   }
   return problems;

@@ -13,8 +13,7 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Points of a loop at given parameters.
 std::unique_ptr<Problem> AtParameters(const std::vector<double>& parameters, FitSpec spec,
                                       int dimension) {
-  DataSet data =
-      MakeNoisyLoop(static_cast<int>(parameters.size()), dimension, 31);
+  DataSet data = MakeNoisyLoop(static_cast<int>(parameters.size()), dimension, 31);
   data.parameters = Eigen::Map<const Eigen::VectorXd>(parameters.data(),
                                                       static_cast<Eigen::Index>(parameters.size()));
   spec.parameters.reset();
@@ -65,7 +64,8 @@ struct NearestCase {
 };
 
 /// Minimiser nearest to the start, each control point's distance weighted by the root of `weights`.
-Points NearestMinimiser(const DenseFit& dense, const Points& start, const Eigen::VectorXd& weights) {
+Points NearestMinimiser(const DenseFit& dense, const Points& start,
+                        const Eigen::VectorXd& weights) {
   const Eigen::VectorXd root = weights.cwiseSqrt().cwiseInverse();
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense.a * root.asDiagonal(),
                                         Eigen::ComputeThinU | Eigen::ComputeThinV);

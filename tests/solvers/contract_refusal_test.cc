@@ -70,8 +70,8 @@ TEST_P(EverySolver, RunsOrRefusesProblemsWithoutACurve) {
 TEST_P(EverySolver, RunsOrRefusesConstraintsOnOneCoordinate) {
   const auto problem = ClosedFit();
   std::string error;
-  ASSERT_TRUE(problem->SetLinearConstraints({{"y of P_2 is twice that of P_3", {{5, 1.0}, {7, -2.0}}, 0.1}},
-                                            &error))
+  ASSERT_TRUE(problem->SetLinearConstraints(
+      {{"y of P_2 is twice that of P_3", {{5, 1.0}, {7, -2.0}}, 0.1}}, &error))
       << error;
   ExpectRunsOrRefuses(*problem, name());
 }
@@ -128,7 +128,8 @@ std::vector<LinearConstraint> ThroughPoint(const CurveFit& fit, double u,
   return constraints;
 }
 
-/// Minimiser of ||A P - Q|| subject to C P = targets, from the conditions of Karush, Kuhn and Tucker.
+/// Minimiser of ||A P - Q|| subject to C P = targets, from the conditions of Karush, Kuhn and
+/// Tucker.
 Points KktSolution(const DenseFit& dense, const Eigen::MatrixXd& c, const Points& targets) {
   const auto n = dense.a.cols();
   const auto k = c.rows();
@@ -143,8 +144,7 @@ Points KktSolution(const DenseFit& dense, const Eigen::MatrixXd& c, const Points
 
 void ExpectHoldsCurveAt(const std::string& solver, int degree, bool closed, int dimension,
                         const std::vector<double>& parameters) {
-  const auto problem =
-      MakeFit(MakeNoisyLoop(50, dimension, 11), MakeSpec(degree, closed, 16));
+  const auto problem = MakeFit(MakeNoisyLoop(50, dimension, 11), MakeSpec(degree, closed, 16));
   const CurveFit& fit = *problem->curve_fit();
   const DenseFit dense(*problem);
   std::vector<LinearConstraint> constraints;
@@ -156,7 +156,8 @@ void ExpectHoldsCurveAt(const std::string& solver, int degree, bool closed, int 
       c(static_cast<Eigen::Index>(k), j) = DenseFit::Coefficient(fit.basis(), parameters[k], j);
     }
     const Points drawn = RandomPoints(1, dimension, &random);
-    for (int i = 0; i < dimension; ++i) targets(static_cast<Eigen::Index>(k), i) = 0.3 * drawn(0, i);
+    for (int i = 0; i < dimension; ++i)
+      targets(static_cast<Eigen::Index>(k), i) = 0.3 * drawn(0, i);
     for (auto& constraint :
          ThroughPoint(fit, parameters[k], targets.row(static_cast<Eigen::Index>(k)))) {
       constraints.push_back(std::move(constraint));

@@ -61,8 +61,8 @@ void ExpectMinimized(const Problem& problem, const SolverTrial& trial) {
   const double energy = (dense.a * dense.solution - dense.q).squaredNorm();
   // Rounding of the data, at most 0.5 inside, is worth this in E; in A P it grows with the
   // condition where residuals are large.
-  const double rounding = std::pow(
-      64 * kEps * dense.a.norm() * (1.0 + dense.condition() * std::sqrt(energy)), 2);
+  const double rounding =
+      std::pow(64 * kEps * dense.a.norm() * (1.0 + dense.condition() * std::sqrt(energy)), 2);
   switch (trial.outcome.reason) {
     case StopReason::kSolved:
       EXPECT_LE(gap, rounding);

@@ -23,8 +23,8 @@ TEST(Gim, ConvergesByTwoThirdsOnAClosedUniformCubic) {
   EXPECT_NEAR(NotedRadius(trial), 2.0 / 3.0, 1e-14);
   const std::vector<double>& norms = trial.context.gradient_norms();
   ASSERT_GT(norms.size(), 50U);
-  // The next eigenvalue of I - A is (1 - cos(3 pi / 4)) / 3 = 0.569: its part of |g|^2 has fallen by
-  // (0.569 / 0.667)^100 = 1e-7.
+  // The next eigenvalue of I - A is (1 - cos(3 pi / 4)) / 3 = 0.569: its part of |g|^2 has fallen
+  // by (0.569 / 0.667)^100 = 1e-7.
   EXPECT_NEAR(norms[51] / norms[50], 2.0 / 3.0, 1e-5);
 }
 

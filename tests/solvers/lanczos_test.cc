@@ -45,9 +45,9 @@ TEST(Lanczos, AnEigenvalueLiesWithinTheErrorItStates) {
   const Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(500, 0.1, 40.0).array().square();
   for (const int max_products : {1, 2, 5, 20, 80}) {
     Spectrum spectrum;
-    ASSERT_EQ(EstimateSpectrum(Diagonal(eigenvalues), RandomStart(500, 3), 0.0, max_products,
-                               &spectrum),
-              Status::kOk);
+    ASSERT_EQ(
+        EstimateSpectrum(Diagonal(eigenvalues), RandomStart(500, 3), 0.0, max_products, &spectrum),
+        Status::kOk);
     EXPECT_EQ(spectrum.products, max_products);
     const auto distance = [&](double value) {
       return (eigenvalues.array() - value).abs().minCoeff();

@@ -11,9 +11,7 @@ namespace {
 
 constexpr int kSize = 6;
 
-Eigen::VectorXd RandomVector(std::mt19937* random) {
-  return RandomPoints(kSize, 1, random);
-}
+Eigen::VectorXd RandomVector(std::mt19937* random) { return RandomPoints(kSize, 1, random); }
 
 struct StepAndChange {
   Eigen::VectorXd s;
@@ -38,12 +36,12 @@ std::vector<StepAndChange> RandomPairs(int count, std::mt19937* random) {
 /// (Nocedal & Wright, eq. 6.17) from H0 = s'y / y'y of the newest pair, over pairs first..end - 1.
 Eigen::MatrixXd ExplicitInverse(const std::vector<StepAndChange>& pairs, std::size_t first) {
   const StepAndChange& newest = pairs.back();
-  Eigen::MatrixXd h = Eigen::MatrixXd::Identity(kSize, kSize) * newest.s.dot(newest.y) /
-                      newest.y.squaredNorm();
+  Eigen::MatrixXd h =
+      Eigen::MatrixXd::Identity(kSize, kSize) * newest.s.dot(newest.y) / newest.y.squaredNorm();
   for (std::size_t k = first; k < pairs.size(); ++k) {
     const double rho = 1.0 / pairs[k].s.dot(pairs[k].y);
-    const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(kSize, kSize) -
-                                 rho * pairs[k].s * pairs[k].y.transpose();
+    const Eigen::MatrixXd left =
+        Eigen::MatrixXd::Identity(kSize, kSize) - rho * pairs[k].s * pairs[k].y.transpose();
     h = left * h * left.transpose() + rho * pairs[k].s * pairs[k].s.transpose();
   }
   return h;

@@ -40,7 +40,9 @@ TEST_P(LbfgsOnTestFunctions, ReachesAKnownMinimum) {
 INSTANTIATE_TEST_SUITE_P(Options, LbfgsOnTestFunctions,
                          ::testing::Values("lbfgs", "lbfgs/memory=3", "lbfgs/memory=20",
                                            "lbfgs/wolfe=strong", "lbfgs/wolfe=strong/c2=0.5"),
-                         [](const auto& options) { return "Case" + std::to_string(options.index); });
+                         [](const auto& options) {
+                           return "Case" + std::to_string(options.index);
+                         });
 
 TEST(Lbfgs, EvaluatesNoPointTwice) {
   for (const char* name : {"rosenbrock", "wood", "helical_valley"}) {

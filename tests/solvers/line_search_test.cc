@@ -139,7 +139,8 @@ TEST(SearchWolfe, NearRoundingTheSlopesAloneDecide) {
     ClosedForm line(value, slope);
     WolfeOptions options;
     LinePoint found;
-    EXPECT_EQ(SearchWolfe(options, -2.0 * c, first, &line, &found), LineSearchEnd::kNoStep) << first;
+    EXPECT_EQ(SearchWolfe(options, -2.0 * c, first, &line, &found), LineSearchEnd::kNoStep)
+        << first;
     options.noise = 8.0 * kEps;
     ASSERT_EQ(SearchWolfe(options, -2.0 * c, first, &line, &found), LineSearchEnd::kFound) << first;
     // (2 c1 - 1) phi'(0) >= phi'(a) >= c2 phi'(0): Hager and Zhang, eq. 4.1.

@@ -23,8 +23,7 @@ void ExpectFirstStep(const Problem& problem, const std::string& solver, const Ei
 
 TEST(Lspia, StepsByTheColumnSumsOfTheCollocationMatrix) {
   for (const bool closed : {true, false}) {
-    const auto problem =
-        MakeFit(WithoutWeights(MakeNoisyLoop(40, 2, 12)), MakeSpec(3, closed, 13));
+    const auto problem = MakeFit(WithoutWeights(MakeNoisyLoop(40, 2, 12)), MakeSpec(3, closed, 13));
     const Eigen::VectorXd sums = DenseFit(*problem).a.colwise().sum();
     ExpectFirstStep(*problem, "lspia", sums.cwiseInverse());
     ExpectFirstStep(*problem, "lspia/relaxation=0.5", 0.5 * sums.cwiseInverse());
@@ -89,10 +88,9 @@ TEST(Lspia, ConvergesWhereRowsAreNoPartitionOfUnity) {
   // Weights from 0.01 to 2000 and two terms: row sums of A are anything but 1.
   DataSet data = MakeNoisyLoop(60, 2, 13);
   for (int i = 0; i < 60; ++i) (*data.weights)[i] *= i % 3 == 0 ? 1000.0 : 0.1;
-  const auto problem =
-      MakeFit(data, MakeSpec(3, true, 12, "interpolation,interpolation/weight=7"));
-  for (const char* solver : {"lspia", "lspia/step=max_column/relaxation=0.99",
-                             "lspia/step=optimal"}) {
+  const auto problem = MakeFit(data, MakeSpec(3, true, 12, "interpolation,interpolation/weight=7"));
+  for (const char* solver :
+       {"lspia", "lspia/step=max_column/relaxation=0.99", "lspia/step=optimal"}) {
     const SolverTrial trial(*problem, solver, {20000});
     EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << solver;
     const std::vector<double>& norms = trial.context.gradient_norms();

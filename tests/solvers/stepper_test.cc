@@ -13,8 +13,10 @@ namespace {
 class SteppedRun {
  public:
   SteppedRun(const Problem& problem, const std::string& name, const Eigen::VectorXd& x)
-      : context_(problem, {1000000, -1.0, false}), objective_(&problem, &context_),
-        solver_(MakeSolver(name)), x_(x) {
+      : context_(problem, {1000000, -1.0, false}),
+        objective_(&problem, &context_),
+        solver_(MakeSolver(name)),
+        x_(x) {
     EXPECT_EQ(solver_->WhyUnsupported(objective_), "");
     EXPECT_FALSE(stepper()->Start(&objective_, &context_, &x_).has_value());
   }

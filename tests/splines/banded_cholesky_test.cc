@@ -94,8 +94,8 @@ TEST(BandedCholesky, SolvesTheDiscretePoissonProblem) {
 }
 
 TEST(BandedCholesky, SolvesCyclicSystemsWhereTheBorderDecaysOrNot) {
-  // Circulant (2 + shift, -1): x = 1 has the right-hand side `shift`, and a unit right-hand side the
-  // geometric solution r^|j| / (r^-1 - r) to the rounding of r^n, r + 1 / r = 2 + shift. With a
+  // Circulant (2 + shift, -1): x = 1 has the right-hand side `shift`, and a unit right-hand side
+  // the geometric solution r^|j| / (r^-1 - r) to the rounding of r^n, r + 1 / r = 2 + shift. With a
   // shift of 1 the fill in the border passes 1e-200 after 480 columns, with 1e-6 not at all.
   const int n = 3000;
   for (const double shift : {1.0, 1e-2, 1e-6}) {

@@ -34,8 +34,8 @@ TEST(BandedQr, SolvesToTheConditionOfTheRows) {
     const Eigen::MatrixXd q = listed.RightHandSides();
     const Eigen::MatrixXd expected = a.householderQr().solve(q);
     const double residual = (a * expected - q).squaredNorm();
-    // Both solutions are off by cond |P| + cond^2 |r| / ||A|| roundings (Higham 2002, theorem 20.1),
-    // of which there are some width in the band and some n in the dense factor.
+    // Both solutions are off by cond |P| + cond^2 |r| / ||A|| roundings (Higham 2002,
+    // theorem 20.1), of which there are some width in the band and some n in the dense factor.
     const double condition = Condition(a);
     const double roundings = (c.num_columns + 8 * c.width) * kEpsilon;
     const double size = 1 + expected.norm() + condition * std::sqrt(residual) / a.norm();
@@ -170,8 +170,8 @@ TEST(BandedQr, LongCyclicRowsSolveTheNormalEquations) {
   const int n = 1000;
   for (const bool decays : {true, false}) {
     const BandCase c = {n, 4, 2, true};
-    ListedRows listed = BsplineRows(c, decays ? 3 : 2, 20240803,
-                                    [&](int j) { return decays || j % 500 == 0; });
+    ListedRows listed =
+        BsplineRows(c, decays ? 3 : 2, 20240803, [&](int j) { return decays || j % 500 == 0; });
     for (int j = 0; j < n; ++j) listed.Add(j, {1, -2, 1, 0}, {0, 0});
     const BandedRows rows({&listed});
     const BandedQr qr = Factor(rows);
@@ -217,7 +217,9 @@ TEST(BandedQr, DoesNotMindHowRowsAreCutIntoBlocks) {
 }
 
 TEST(BandedQr, SeesThatTheRankIsNotFull) {
-  const auto rows_of = [](const BandCase& c, auto keep) { return BsplineRows(c, 9, 20240806, keep); };
+  const auto rows_of = [](const BandCase& c, auto keep) {
+    return BsplineRows(c, 9, 20240806, keep);
+  };
   for (const bool cyclic : {false, true}) {
     const BandCase c = {40, 4, 2, cyclic};
     EXPECT_TRUE(Factor(rows_of(c, [](int) { return true; })).full_rank());

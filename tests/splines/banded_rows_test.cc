@@ -41,7 +41,8 @@ TEST(BandedRows, ResidualsAndTransposedProductAreTheDenseOnes) {
     EXPECT_EQ(residuals, Points(listed.RightHandSides() - a * p));
     Points product = Points::Ones(c.num_columns, c.dimension);
     rows.AddTransposedProduct(residuals.data(), product.data());
-    EXPECT_EQ(product, Points(Points::Ones(c.num_columns, c.dimension) + a.transpose() * residuals));
+    EXPECT_EQ(product,
+              Points(Points::Ones(c.num_columns, c.dimension) + a.transpose() * residuals));
   }
 }
 

@@ -57,8 +57,7 @@ TEST(SolveNearest, AgreesWithSingularValuesForAnyRank) {
 TEST(SolveNearest, LeavesUnseenControlPointsAtTheStart) {
   for (const bool cyclic : {false, true}) {
     const BandCase c = {60, 4, 2, cyclic};
-    const ListedRows listed =
-        BsplineRows(c, 9, 20240902, [](int j) { return j < 20 || j > 29; });
+    const ListedRows listed = BsplineRows(c, 9, 20240902, [](int j) { return j < 20 || j > 29; });
     const Points start = RandomPoints(60, 2, 10);
     const NearestSolution nearest = SolveNearest(listed, start);
     // Spans 20..29 would have touched 20..32; the neighbours' data touch 20..22 and 30..32.
@@ -78,9 +77,10 @@ TEST(SolveNearest, ReturnsAStartThatIsAMinimiser) {
   int i = 0;
   for (int column = 0; column < 30; ++column) {
     for (std::size_t k = 0; k < empty_right.NumRowsAt(column); ++k, ++i) {
-      listed.Add(column, {a(i, column), a(i, (column + 1) % 30), a(i, (column + 2) % 30),
-                          a(i, (column + 3) % 30)},
-                 {q(i, 0), q(i, 1)});
+      listed.Add(
+          column,
+          {a(i, column), a(i, (column + 1) % 30), a(i, (column + 2) % 30), a(i, (column + 3) % 30)},
+          {q(i, 0), q(i, 1)});
     }
   }
   const NearestSolution nearest = SolveNearest(listed, start);
