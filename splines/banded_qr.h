@@ -87,7 +87,7 @@ class BandedQr : public RowConsumer {
 /// - "banded QR": A has full rank.
 /// - "complete orthogonal decomposition": it has not; singular values below about kRankTolerance
 ///   times the largest are taken as zero. Up to 500 columns.
-/// - "LSQR, ... steps": it has not, and there are more columns; the rank is not known (-1).
+/// - "CGLS, ... steps": it has not, and there are more columns; the rank is not known (-1).
 /// Directions
 ///   whose singular value is far below 1e-5 times the largest may not have moved from the start.
 /// - "none, ...": rows or start are not finite; the start is returned.
