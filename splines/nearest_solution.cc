@@ -121,6 +121,8 @@ void SolveIteratively(const RowSource& source, NearestSolution* result) {
     direction = next + (next_squared / squared) * direction;
     squared = next_squared;
   }
+  // Without a number there is no minimiser: the caller says so.
+  if (!std::isfinite(squared)) p.setConstant(std::numeric_limits<double>::quiet_NaN());
   result->method = "CGLS, " + std::to_string(step) + " steps";
   if (squared > floor * floor) result->method += ", not settled";
 }
