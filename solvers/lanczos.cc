@@ -16,9 +16,15 @@ void ReadRitzValues(const std::vector<double>& diagonal, const std::vector<doubl
   solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), k),
                                 Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), k - 1));
   const double beta = off_diagonal.back();
-  spectrum->smallest = solver.eigenvalues()[0];
-  spectrum->smallest_error = beta * std::abs(solver.eigenvectors()(k - 1, 0));
-  spectrum->largest = solver.eigenvalues()[k - 1];
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  // Rounding brings in what the start does not reach, and a Ritz value that falls to zero with it.
+  constexpr double kRoundings = 64.0;
+  const double null = kRoundings * std::numeric_limits<double>::epsilon() * values[k - 1];
+  Eigen::Index first = 0;
+  while (first < k - 1 && values[first] <= null) ++first;
+  spectrum->smallest = values[first];
+  spectrum->smallest_error = beta * std::abs(solver.eigenvectors()(k - 1, first));
+  spectrum->largest = values[k - 1];
   spectrum->largest_error = beta * std::abs(solver.eigenvectors()(k - 1, k - 1));
 }
 

@@ -11,7 +11,8 @@ namespace batten {
 
 /// Ends of the spectrum of a symmetric operator, as the Lanczos recursion sees them.
 struct Spectrum {
-  double smallest = 0.0;        // Ritz value; of the part of the space the start reaches
+  double smallest = 0.0;        // Ritz value; of the part of the space the start reaches, values
+                                // below 64 roundings of the largest left out
   double smallest_error = 0.0;  // residual norm: an eigenvalue lies within it
   double largest = 0.0;
   double largest_error = 0.0;

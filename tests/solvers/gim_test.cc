@@ -115,6 +115,27 @@ TEST(Gim, PairsByGrevilleAbscissaeWhereverTheFirstPointLies) {
   }
 }
 
+TEST(Gim, TheRateItSeesIsTheSpectralRadiusItPrints) {
+  struct Case {
+    const char* knots;
+    int first, last;
+    double tolerance;
+  };
+  // Averaged: eigenvalues crowd at the radius, |g| falls like radius^k k^-a with a of about 1, which
+  // over these iterations is worth (50 / 20)^(-1 / 30). Uniform knots and centripetal parameters: I
+  // - A is far from normal, and |g| falls by up to 0.86 an iteration before it falls by 0.714.
+  for (const Case& c : {Case{"averaged", 20, 50, 0.03}, Case{"uniform", 90, 105, 0.05}}) {
+    FitSpec spec = MakeSpec(3, true, 100);
+    ASSERT_TRUE(FromString(c.knots, &spec.knots));
+    const auto problem = MakeFileFit("animals/rhino_100.csv", spec);
+    const SolverTrial trial(*problem, "gim", {c.last, -1.0});
+    const std::vector<double>& norms = trial.context.gradient_norms();
+    ASSERT_EQ(norms.size(), c.last + 1U) << c.knots;
+    const double rate = std::pow(norms[c.last] / norms[c.first], 1.0 / (c.last - c.first));
+    EXPECT_NEAR(rate, NotedRadius(trial), c.tolerance * NotedRadius(trial)) << c.knots;
+  }
+}
+
 TEST(Gim, EstimatesTheSpectralRadiusOfManyPointsFromBelow) {
   // Above 300 points by a power iteration, whose growth is a mean.
   const auto problem = MakeCirculantFit(400, 1);
