@@ -63,16 +63,6 @@ struct NearestCase {
   bool by_column_sums = false;
 };
 
-/// Minimiser nearest to the start, each control point's distance weighted by the root of `weights`.
-Points NearestMinimiser(const DenseFit& dense, const Points& start,
-                        const Eigen::VectorXd& weights) {
-  const Eigen::VectorXd root = weights.cwiseSqrt().cwiseInverse();
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense.a * root.asDiagonal(),
-                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(1e-11);
-  return start + root.asDiagonal() * svd.solve(dense.q - dense.a * start);
-}
-
 class NearestToTheStart : public ::testing::TestWithParam<NearestCase> {};
 
 TEST_P(NearestToTheStart, AmongTheMinimisersOfADeficientFit) {
@@ -94,7 +84,7 @@ TEST_P(NearestToTheStart, AmongTheMinimisersOfADeficientFit) {
       // A control point without data stays: any weight does.
       for (double& weight : weights) weight = weight > 0.0 ? weight : 1.0;
     }
-    const Points expected = NearestMinimiser(dense, dense.PointsOf(problem->start()), weights);
+    const Points expected = dense.NearestMinimiser(dense.PointsOf(problem->start()), weights);
     const double skew = std::sqrt(weights.maxCoeff() / weights.minCoeff());
     const double rounding = 256 * kEps * dense.condition() * dense.condition();
     EXPECT_LT((dense.PointsOf(trial.x) - expected).norm(),

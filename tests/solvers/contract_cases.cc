@@ -1,0 +1,106 @@
+#include "tests/solvers/contract_cases.h"
+
+#include <glog/logging.h>
+
+#include <cstring>
+#include <utility>
+
+namespace batten {
+
+std::unique_ptr<Solver> MakeSolver(const std::string& name_and_options) {
+  NameSpec spec;
+  std::string error;
+  CHECK(ParseNameSpec(name_and_options, &spec, &error)) << error;
+  std::unique_ptr<Solver> solver = SolverRegistry::Global().Make(spec, nullptr, &error);
+  CHECK(solver != nullptr) << error;
+  return solver;
+}
+
+std::string WhyUnsupported(const Problem& problem, const std::string& solver, bool compile) {
+  return MakeSolver(solver)->WhyUnsupported(Objective(&problem, nullptr, {compile}));
+}
+
+SolverTrial::SolverTrial(const Problem& problem, const std::string& solver,
+                         TestContextOptions options, bool compile)
+    : context(problem, options) {
+  Objective objective(&problem, &context, {compile});
+  x = objective.start();
+  outcome = MakeSolver(solver)->Minimize(&objective, &context, &x);
+  all = objective.Expand(x);
+}
+
+bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+DataSet WithoutWeights(DataSet data) {
+  data.weights.reset();
+  return data;
+}
+
+std::vector<ContractProblem> LeastSquaresProblems() {
+  std::vector<ContractProblem> problems;
+  const auto add = [&problems](FitSpec spec, int m) {
+    const auto seed = static_cast<unsigned>(problems.size());
+    const int d = 1 + static_cast<int>(seed % 4);
+    const bool weighted = seed % 3 != 1;
+    const char* ends = spec.closed                        ? "closed"
+                       : spec.ends == EndKnots::kFloating ? "floating"
+                                                          : "clamped";
+    problems.push_back({std::string(ends) + " degree " + std::to_string(spec.degree) + ", " +
+                            ToString(spec.knots) +
+                            " knots, n = " + std::to_string(spec.control_points) +
+                            ", d = " + std::to_string(d) + (weighted ? ", weighted" : ""),
+                        [=] {
+                          DataSet data = MakeNoisyLoop(m, d, 100 + seed);
+                          return MakeFit(weighted ? data : WithoutWeights(data), spec);
+                        }});
+  };
+  for (const int degree : {1, 2, 3, 5, 9}) {
+    for (const KnotRule knots : {KnotRule::kUniform, KnotRule::kAveraged}) {
+      for (const bool closed : {true, false}) {
+        FitSpec spec = MakeSpec(degree, closed, 19);
+        spec.knots = knots;
+        add(spec, 60);
+      }
+      FitSpec spec = MakeSpec(degree, false, 15);
+      spec.knots = knots;
+      spec.ends = EndKnots::kFloating;
+      add(spec, 60);
+    }
+  }
+  // The basis wraps onto itself, or its band overlaps its corner.
+  for (const auto& [degree, n] : {std::pair(3, 6), {3, 3}, {3, 1}, {2, 4}, {5, 2}, {9, 12}}) {
+    add(MakeSpec(degree, true, n), 30);
+  }
+  return problems;
+}
+
+std::vector<ContractProblem> InterpolationProblems() {
+  std::vector<ContractProblem> problems;
+  for (const int degree : {1, 2, 3, 5}) {
+    for (const bool closed : {true, false}) {
+      const int d = 1 + static_cast<int>(problems.size() % 4);
+      problems.push_back(
+          {std::string(closed ? "closed" : "clamped") + " degree " + std::to_string(degree) +
+               " through all points, d = " + std::to_string(d),
+           [=] {
+             FitSpec spec = MakeSpec(degree, closed, 24);
+             spec.knots = KnotRule::kAveraged;
+             return MakeFit(
+                 WithoutWeights(MakeNoisyLoop(24, d, 200u + static_cast<unsigned>(degree))), spec);
+           }});
+    }
+  }
+  return problems;
+}
+
+std::vector<ContractProblem> TwoProblems() {
+  return {{"weighted closed curve",
+           [] { return MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17)); }},
+          InterpolationProblems()[5]};
+}
+
+}  // namespace batten
+
