@@ -7,7 +7,7 @@
 
 #include "problems/fit_problem.h"
 #include "splines/banded_cholesky.h"
-#include "splines/banded_qr.h"
+#include "splines/nearest_solution.h"
 
 namespace batten {
 namespace {

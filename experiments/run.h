@@ -59,7 +59,10 @@ struct RunResult {
   double energy = 0.0;
   double gradient_norm = 0.0;
   double gradient_floor = 0.0;  ///< Rounding floor of |g|.
-  double observed_rate = 0.0;   ///< Factor of |g| per iteration near the end; NaN: none.
+  /// |g| below which a step along -g no longer lowers E by more than its rounding. Known where a
+  /// line search or a library ended the run, else 0.
+  double line_search_floor = 0.0;
+  double observed_rate = 0.0;  ///< Factor of |g| per iteration near the end; NaN: none.
   std::vector<std::pair<std::string, std::string>> notes;
   std::vector<TraceRow> trace;
   std::vector<Iterate> iterates;

@@ -192,6 +192,18 @@ StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd
   return StopReason::kNotRun;
 }
 
+/// The step that is best along -g lowers E by |g|^2 / (2 q), q = g'Hg / g'g.
+double RunControl::LineSearchFloor(const Eigen::VectorXd& x, double energy,
+                                   const Eigen::VectorXd& gradient) {
+  const double squared_norm = gradient.squaredNorm();
+  Eigen::VectorXd product;
+  if (squared_norm == 0.0 || reporter_.HessianTimes(x, gradient, &product) != Status::kOk)
+    return 0.0;
+  const double curvature = gradient.dot(product) / squared_norm;
+  const double noise = Objective::EnergyRoundingFloor(energy, reporter_.ResidualSize(x));
+  return curvature > 0.0 ? std::sqrt(2.0 * curvature * noise) : 0.0;
+}
+
 void RunControl::Finish(const Eigen::VectorXd& x) {
   watch_.Pause();
   const Units& units = problem_.units();
@@ -204,6 +216,10 @@ void RunControl::Finish(const Eigen::VectorXd& x) {
   result_->gradient_norm =
       finite ? gradient.norm() * units.gradient : std::numeric_limits<double>::quiet_NaN();
   if (finite) result_->gradient_floor = reporter_.GradientRoundingFloor(x) * units.gradient;
+  const StopReason reason = result_->outcome.reason;
+  if (finite && (reason == StopReason::kLineSearchEnded || reason == StopReason::kNativeStop)) {
+    result_->line_search_floor = LineSearchFloor(x, energy, gradient) * units.gradient;
+  }
   result_->iterations = std::max(iteration_, 0);
   result_->counts.distinct_points = static_cast<long>(points_.size());
   result_->seconds = watch_.seconds();

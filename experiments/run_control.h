@@ -35,7 +35,8 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   RunControl(const Problem& problem, const RunSpec& spec, NativeRule rule, RunResult* result);
 
   void Begin() { watch_.Resume(); }
-  /// Stops the clocks and writes counts, times and the end's energy and gradient to the result.
+  /// Stops the clocks and writes, beside the outcome that is in the result already, counts, times
+  /// and the end's energy and gradient to the result.
   void Finish(const Eigen::VectorXd& x);
 
   bool Allow(Evaluation kind, const Eigen::VectorXd* x) override;
@@ -50,6 +51,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   void Book(const Eigen::VectorXd& x);
   StopReason CheckStop(const TraceRow& row);
   StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
+  double LineSearchFloor(const Eigen::VectorXd& x, double energy, const Eigen::VectorXd& gradient);
   double StepNorm(const Eigen::VectorXd& x) const;
 
   const Problem& problem_;

@@ -163,6 +163,26 @@ double Objective::GradientRoundingFloor(const Eigen::VectorXd& x) const {
   return 2.0 * kFloorRoundings * kEpsilon * bound.norm();
 }
 
+double Objective::ResidualSize(const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd all = Expand(x);
+  const Eigen::VectorXd origin = Eigen::VectorXd::Zero(all.size());
+  double sum = 0.0;
+  for (const Problem::TermInstance& term : problem_->terms()) {
+    Eigen::VectorXd here;
+    Eigen::VectorXd at_origin;
+    if (term.family->Residuals(all, &here) != Status::kOk) continue;
+    const double size = term.family->Residuals(origin, &at_origin) == Status::kOk
+                            ? (at_origin.cwiseAbs() + (here - at_origin).cwiseAbs()).squaredNorm()
+                            : here.squaredNorm();
+    sum += term.family->weight() * size;
+  }
+  return std::sqrt(sum);
+}
+
+double Objective::EnergyRoundingFloor(double energy, double residual_size) {
+  return kFloorRoundings * kEpsilon * (2.0 * std::sqrt(energy) * residual_size + energy);
+}
+
 std::vector<double> Objective::TermEnergies(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd all = Expand(x);
   std::vector<double> energies;

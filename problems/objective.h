@@ -61,6 +61,12 @@ class Objective {
   /// Size below which |g| is noise: 4 eps times the norm of sum |J|'(|J||x| + |r|), doubled as the
   /// gradient of E without factor 1/2 is.
   double GradientRoundingFloor(const Eigen::VectorXd& x) const;
+  /// What residuals near x are differences of: the norm of |r(0)| + |r(x) - r(0)|, for r = A P - Q
+  /// that of |Q| + |A P|. If r has no value at 0, the norm of r(x).
+  double ResidualSize(const Eigen::VectorXd& x) const;
+  /// Size below which differences of E = ||r||^2 are noise: each residual carries a few roundings
+  /// of what it is a difference of, so that E carries 4 eps (2 sqrt(E) ResidualSize + E).
+  static double EnergyRoundingFloor(double energy, double residual_size);
   std::vector<double> TermEnergies(const Eigen::VectorXd& x) const;
 
  private:

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "splines/banded_cholesky.h"
-#include "splines/banded_qr.h"
+#include "splines/nearest_solution.h"
 
 namespace batten {
 

@@ -1,6 +1,7 @@
 #include "solvers/banded_qr.h"
 
 #include "splines/banded_qr.h"
+#include "splines/nearest_solution.h"
 
 namespace batten {
 

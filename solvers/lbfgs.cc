@@ -1,12 +1,9 @@
 #include "solvers/lbfgs.h"
 
 #include <cmath>
-#include <limits>
 
 namespace batten {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// E along x + a d, by evaluation. Leaves the last point's gradient behind.
 class EvaluatedLine : public LineFunction {
@@ -97,6 +94,7 @@ std::optional<Outcome> LbfgsSolver::DoStart(Eigen::VectorXd* x) {
                             ? objective()->Gradient(*x, &gradient_)
                             : objective()->EnergyAndGradient(*x, &energy_, &gradient_);
   if (status != Status::kOk) return Ended(status);
+  if (!objective()->is_quadratic()) residual_size_ = objective()->ResidualSize(*x);
   return std::nullopt;
 }
 
@@ -108,8 +106,7 @@ double LbfgsSolver::FirstStep() const {
 LineSearchEnd LbfgsSolver::Search(const Eigen::VectorXd& x, double slope, LinePoint* found,
                                   Status* status) {
   if (!objective()->is_quadratic()) {
-    // E is a sum of squares: its rounding error is a few units of its own size.
-    wolfe_.noise = 8.0 * kEpsilon * std::abs(energy_);
+    wolfe_.noise = Objective::EnergyRoundingFloor(energy_, residual_size_);
     EvaluatedLine line(objective(), x, direction_, energy_, &next_x_, &next_gradient_,
                        &next_energy_);
     const LineSearchEnd end = SearchWolfe(wolfe_, slope, FirstStep(), &line, found);

@@ -27,6 +27,7 @@ class LbfgsSolver final : public Stepper {
   WolfeOptions wolfe_;
   LbfgsMemory memory_;
   double energy_ = 0.0;  // not used on quadratics
+  double residual_size_ = 0.0;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd direction_;
   Eigen::VectorXd product_;  // Hessian times direction, on quadratics

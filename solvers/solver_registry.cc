@@ -38,6 +38,8 @@ void SolverRegistry::Register(SolverEntry entry) {
   CHECK(entries_.emplace(name, std::move(entry)).second) << "two solvers are named " << name;
 }
 
+void SolverRegistry::Remove(const std::string& name) { entries_.erase(name); }
+
 std::vector<std::string> SolverRegistry::Names() const {
   std::vector<std::string> names;
   for (const auto& [name, entry] : entries_) names.push_back(name);

@@ -32,6 +32,7 @@ class SolverRegistry {
  public:
   static SolverRegistry& Global();
   void Register(SolverEntry entry);
+  void Remove(const std::string& name);  ///< For solvers that come and go, as in tests.
   std::vector<std::string> Names() const;
   const SolverInfo* Find(const std::string& name) const;  ///< Null for an unknown name.
   /// A solver for one run and the options it really uses (of the outermost one); null with one

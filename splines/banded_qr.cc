@@ -96,13 +96,15 @@ void BandedQr::Finish() {
   FoldPending();
   if (num_border_ > 0) FoldWrapped();
   double smallest = 0.0;
+  bool finite = true;
   largest_ = 0.0;
   for (int j = 0; j < shape_.num_columns; ++j) {
     const double size = std::abs(DiagonalEntry(j));
     smallest = j == 0 ? size : std::min(smallest, size);
-    // Kept once it is not a number.
-    if (!(size <= largest_)) largest_ = std::isfinite(size) ? size : std::nan("");
+    finite = finite && std::isfinite(size);
+    largest_ = std::max(largest_, size);
   }
+  if (!finite) largest_ = std::nan("");
   ratio_ = shape_.num_columns == 0 ? 1.0 : largest_ == 0.0 ? 0.0 : smallest / largest_;
   full_rank_ = ratio_ > kRankTolerance;
 }
@@ -214,16 +216,12 @@ const double* BandedQr::RightHandSide(int j) const {
 }
 
 void BandedQr::Solve(Points* control_points) const {
-  *control_points = TriangleRightHandSide();
-  SolveTriangle(shape_.dimension, control_points->data());
-}
-
-Points BandedQr::TriangleRightHandSide() const {
-  Points right(shape_.num_columns, shape_.dimension);
+  control_points->resize(shape_.num_columns, shape_.dimension);
   for (int j = 0; j < shape_.num_columns; ++j) {
-    std::copy_n(RightHandSide(j), shape_.dimension, right.data() + j * shape_.dimension);
+    std::copy_n(RightHandSide(j), shape_.dimension,
+                control_points->data() + static_cast<std::ptrdiff_t>(j) * shape_.dimension);
   }
-  return right;
+  SolveTriangle(shape_.dimension, control_points->data());
 }
 
 template <int kDimension>
@@ -266,26 +264,20 @@ void BandedQr::SolveTransposedTriangle(int dimension, double* x) const {
   }
 }
 
-void BandedQr::MultiplyTriangle(int dimension, double* x) const {
-  for (int j = 0; j < shape_.num_columns; ++j) {
-    double* const target = x + static_cast<std::size_t>(j) * dimension;
-    for (int c = 0; c < dimension; ++c) target[c] *= DiagonalEntry(j);
-    VisitRow(j, [&](int column, double entry) {
-      const double* source = x + static_cast<std::size_t>(column) * dimension;
-      for (int c = 0; c < dimension; ++c) target[c] += entry * source[c];
-    });
-  }
-}
-
-void BandedQr::MultiplyTransposedTriangle(int dimension, double* x) const {
-  for (int j = shape_.num_columns - 1; j >= 0; --j) {
-    double* const source = x + static_cast<std::size_t>(j) * dimension;
-    VisitRow(j, [&](int column, double entry) {
-      double* target = x + static_cast<std::size_t>(column) * dimension;
-      for (int c = 0; c < dimension; ++c) target[c] += entry * source[c];
-    });
-    for (int c = 0; c < dimension; ++c) source[c] *= DiagonalEntry(j);
-  }
+void BandedQr::CopyRow(int j, double* window, double* tail, double* right) const {
+  const int num_band = num_band_columns();
+  const auto set = [&](int column, double entry) {
+    if (column < num_band) {
+      window[column - j] = entry;
+    } else {
+      tail[column - num_band] = entry;
+    }
+  };
+  std::fill_n(window, width_, 0.0);
+  std::fill_n(tail, num_tail_columns(), 0.0);
+  set(j, DiagonalEntry(j));
+  VisitRow(j, set);
+  std::copy_n(RightHandSide(j), shape_.dimension, right);
 }
 
 }  // namespace batten

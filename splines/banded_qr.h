@@ -1,7 +1,6 @@
 #ifndef BATTEN_SPLINES_BANDED_QR_H_
 #define BATTEN_SPLINES_BANDED_QR_H_
 
-#include <string>
 #include <vector>
 
 #include "splines/row_block.h"
@@ -35,15 +34,19 @@ class BandedQr : public RowConsumer {
   /// ||A P - Q||^2 at the minimiser; only with full_rank().
   double residual_sum_of_squares() const { return residual_; }
 
-  /// Products with R and its inverse, in place, x n x dimension: the norms ||R x|| and ||A x|| are
-  /// equal, so that R stands for A in iterations. The inverses need full_rank().
-  void MultiplyTriangle(int dimension, double* x) const;
-  void MultiplyTransposedTriangle(int dimension, double* x) const;
+  /// Solves with R or its transpose, in place, x n x dimension; only with full_rank().
   void SolveTriangle(int dimension, double* x) const;
   void SolveTransposedTriangle(int dimension, double* x) const;
-  /// The right-hand side Q is turned into, n x d: ||R P - that||^2 is ||A P - Q||^2 up to a
-  /// constant.
-  Points TriangleRightHandSide() const;
+
+  int width() const { return width_; }  // of the band
+  /// Columns whose rows of R stand in the band: n for open matrices, n - 2 (width - 1) for cyclic
+  /// ones (0 where they overlap), whose last columns, the tail, are filled.
+  int num_band_columns() const { return shape_.num_columns - num_tail_columns(); }
+  int num_tail_columns() const { return overlaps_ ? shape_.num_columns : 2 * num_border_; }
+  /// Row j of R: `window`, width entries from column j on as far as they are in the band's columns
+  /// (zeros for rows of the tail); `tail`, those in its columns; `right`, what Q is turned into:
+  /// ||R P - right||^2 is ||A P - Q||^2 up to a constant.
+  void CopyRow(int j, double* window, double* tail, double* right) const;
 
  private:
   class RowBuffer;
@@ -81,24 +84,6 @@ class BandedQr : public RowConsumer {
   double ratio_ = 0.0;
   bool full_rank_ = false;
 };
-
-/// The minimiser of ||A P - Q|| that is nearest to `start` (n x d) in the Euclidean norm of control
-/// points, for any rank. What was done is said in the result:
-/// - "banded QR": A has full rank.
-/// - "complete orthogonal decomposition": it has not; singular values below about kRankTolerance
-///   times the largest are taken as zero. Up to 500 columns.
-/// - "CGLS, ... steps": it has not, and there are more columns; the rank is not known (-1).
-/// Directions
-///   whose singular value is far below 1e-5 times the largest may not have moved from the start.
-/// - "none, ...": rows or start are not finite; the start is returned.
-struct NearestSolution {
-  Points control_points;
-  int rank = -1;        // numerical rank of A with BandedQr::kRankTolerance; -1: not known
-  bool unique = false;  // rank == n
-  double diagonal_ratio = 0.0;
-  std::string method;  // "banded QR", "complete orthogonal decomposition", ...
-};
-NearestSolution SolveNearest(const RowSource& rows, const Points& start);
 
 }  // namespace batten
 

@@ -1,55 +1,95 @@
-#include <Eigen/QR>
+#include "splines/nearest_solution.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <numeric>
 #include <vector>
 
 #include "splines/banded_qr.h"
-#include "splines/banded_rows.h"
-#include "splines/row_pack.h"
+#include "splines/fold_rows.h"
+#include "splines/least_norm_fronts.h"
 
 namespace batten {
 namespace {
 
-/// Up to here a rank-deficient triangle is decomposed densely: n^3 operations, a fraction of a
-/// second.
-constexpr int kMaxDenseColumns = 500;
+using Eigen::MatrixXd;
 
-/// Rows A (P - start) = Q - A start.
-class ShiftedRows : public RowSource {
+/// The columns cut into stretches, each a separator of width - 1 columns, which no row reaches
+/// across, and an interior. first holds the rows that begin in a stretch, in the displacements from
+/// the start; second says that displacements are to be small.
+class Stretches : public RowConsumer {
  public:
-  ShiftedRows(const RowSource& rows, const Points& start) : rows_(rows), start_(start) {}
-  RowShape shape() const override { return rows_.shape(); }
-  void Stream(RowConsumer* consumer) const override {
-    Shifter shifter(rows_.shape(), start_, consumer);
-    rows_.Stream(&shifter);
-  }
+  Stretches(const RowShape& shape, const Points& start);
+  void Consume(const RowBlock& block) override;
+  /// Eliminates everything; call once, after the last row.
+  void Eliminate(LeastNormFronts* fronts);
 
  private:
-  class Shifter : public RowConsumer {
-   public:
-    Shifter(const RowShape& shape, const Points& start, RowConsumer* consumer)
-        : shape_(shape),
-          start_(start),
-          consumer_(consumer),
-          right_(static_cast<std::size_t>(shape.dimension) * kMaxRowsPerBlock) {}
-    void Consume(const RowBlock& block) override;
+  void FoldPending();
+  int num_stretches() const { return static_cast<int>(begins_.size()) - 1; }
+  std::vector<int> Range(int begin, int end) const;
+  /// Of stretch k; that of the first one too where a cyclic matrix closes, none after an open one.
+  std::vector<int> Separator(int k) const;
 
-   private:
-    RowShape shape_;
-    const Points& start_;
-    RowConsumer* consumer_;
-    RowStorage right_;
-  };
-
-  const RowSource& rows_;
+  RowShape shape_;
   const Points& start_;
+  int separator_;
+  std::vector<int> begins_;  // first column of each stretch, then n
+  std::vector<Front> fronts_;
+  std::vector<double> pending_;   // rows of one window, as for FoldAny
+  std::vector<double> triangle_;  // width x (width + dimension)
+  int pending_column_ = -1;
 };
 
-void ShiftedRows::Shifter::Consume(const RowBlock& block) {
+Stretches::Stretches(const RowShape& shape, const Points& start)
+    : shape_(shape),
+      start_(start),
+      separator_(std::min(shape.width - 1, shape.num_columns)),
+      pending_(static_cast<std::size_t>(kMaxRowsPerBlock) * (shape.width + shape.dimension)),
+      triangle_(static_cast<std::size_t>(shape.width) * (shape.width + shape.dimension), 0.0) {
+  // Long enough that pivots have a choice, short enough for dense matrices.
+  const int length = separator_ + std::max(16, 2 * separator_);
+  const int count = std::max(1, shape.num_columns / length);
+  for (int k = 0; k <= count; ++k) {
+    begins_.push_back(static_cast<int>(static_cast<long>(shape.num_columns) * k / count));
+  }
+  for (int k = 0; k < count; ++k) {
+    Front front;
+    front.columns = Range(begins_[k], begins_[k + 1]);
+    const auto size = static_cast<Eigen::Index>(front.columns.size());
+    for (const int column : Separator(k + 1)) front.columns.push_back(column);
+    const auto width = static_cast<Eigen::Index>(front.columns.size()) + shape.dimension;
+    front.first.resize(0, width);
+    front.second = MatrixXd::Identity(size, width);
+    front.second.rightCols(shape.dimension).setZero();
+    fronts_.push_back(std::move(front));
+  }
+}
+
+std::vector<int> Stretches::Range(int begin, int end) const {
+  std::vector<int> columns(static_cast<std::size_t>(end - begin));
+  std::iota(columns.begin(), columns.end(), begin);
+  return columns;
+}
+
+std::vector<int> Stretches::Separator(int k) const {
+  if (k == num_stretches()) {
+    // One stretch that closes on itself has all columns already.
+    return shape_.cyclic && k > 1 ? Separator(0) : std::vector<int>();
+  }
+  if (k == 0 && !shape_.cyclic) return {};
+  return Range(begins_[k], begins_[k] + separator_);
+}
+
+void Stretches::Consume(const RowBlock& block) {
+  if (block.first_column != pending_column_) {
+    FoldPending();
+    pending_column_ = block.first_column;
+  }
   const int stride = block.stride;
-  double* const right = right_.data();
+  std::copy_n(block.coefficients, shape_.width * stride, pending_.data());
+  double* const right = pending_.data() + shape_.width * stride;
   std::copy_n(block.right_hand_sides, shape_.dimension * stride, right);
   for (int j = 0; j < shape_.width; ++j) {
     const int column = (block.first_column + j) % shape_.num_columns;
@@ -59,9 +99,73 @@ void ShiftedRows::Shifter::Consume(const RowBlock& block) {
       }
     }
   }
-  RowBlock shifted = block;
-  shifted.right_hand_sides = right;
-  consumer_->Consume(shifted);
+  const PackedRows rows = {AsPacks(pending_.data()), stride / kPackLanes, stride / kPackLanes};
+  FoldAny(shape_.width, shape_.dimension, rows, triangle_.data(), shape_.width + shape_.dimension);
+}
+
+void Stretches::FoldPending() {
+  if (pending_column_ < 0) return;
+  const auto next = std::upper_bound(begins_.begin(), begins_.end() - 1, pending_column_);
+  Front& front = fronts_[static_cast<std::size_t>(next - begins_.begin() - 1)];
+  const int row_size = shape_.width + shape_.dimension;
+  double largest = 0.0;
+  for (int i = 0; i < shape_.width; ++i) {
+    for (int k = 0; k < shape_.width; ++k) {
+      largest = std::max(largest, std::abs(triangle_[static_cast<std::size_t>(i * row_size + k)]));
+    }
+  }
+  for (int i = 0; i < shape_.width; ++i) {
+    double* const row = triangle_.data() + i * row_size;
+    // Windows with fewer independent rows than columns leave rows of nothing but rounding.
+    constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+    const auto is_noise = [&](double entry) { return std::abs(entry) <= kRounding * largest; };
+    if (std::all_of(row, row + shape_.width - i, is_noise)) continue;
+    const Eigen::Index last = front.first.rows();
+    front.first.conservativeResize(last + 1, front.first.cols());
+    front.first.row(last).setZero();
+    for (int k = i; k < shape_.width; ++k) {
+      const int column = (pending_column_ + k) % shape_.num_columns;
+      const auto place = std::find(front.columns.begin(), front.columns.end(), column);
+      front.first(last, place - front.columns.begin()) += row[k - i];
+    }
+    for (int c = 0; c < shape_.dimension; ++c) {
+      front.first(last, front.first.cols() - shape_.dimension + c) = row[shape_.width + c];
+    }
+  }
+  std::fill(triangle_.begin(), triangle_.end(), 0.0);
+  pending_column_ = -1;
+}
+
+void Stretches::Eliminate(LeastNormFronts* fronts) {
+  FoldPending();
+  // Front i goes from separator bounds[i] to bounds[i + 1].
+  std::vector<int> bounds(fronts_.size() + 1);
+  std::iota(bounds.begin(), bounds.end(), 0);
+  const auto ends = [&](std::size_t first, std::size_t last) {
+    std::vector<int> kept = Separator(bounds[first]);
+    const std::vector<int> right = Separator(bounds[last]);
+    kept.insert(kept.end(), right.begin(), right.end());
+    return kept;
+  };
+  for (std::size_t i = 0; fronts_.size() > 1 && i < fronts_.size(); ++i) {
+    fronts_[i] = fronts->Eliminate({&fronts_[i]}, ends(i, i + 1));
+  }
+  while (fronts_.size() > 2) {
+    std::vector<Front> merged;
+    std::vector<int> merged_bounds;
+    for (std::size_t i = 0; i < fronts_.size(); i += 2) {
+      merged_bounds.push_back(bounds[i]);
+      merged.push_back(i + 1 < fronts_.size()
+                           ? fronts->Eliminate({&fronts_[i], &fronts_[i + 1]}, ends(i, i + 2))
+                           : std::move(fronts_[i]));
+    }
+    merged_bounds.push_back(bounds.back());
+    fronts_ = std::move(merged);
+    bounds = std::move(merged_bounds);
+  }
+  std::vector<const Front*> last;
+  for (const Front& front : fronts_) last.push_back(&front);
+  fronts->Eliminate(last, {});
 }
 
 BandedQr Factor(const RowSource& rows) {
@@ -71,85 +175,30 @@ BandedQr Factor(const RowSource& rows) {
   return qr;
 }
 
-void SolveDense(const BandedQr& qr, int n, NearestSolution* result) {
-  Eigen::MatrixXd triangle(n, n);
-  Points unit = Points::Identity(n, n);
-  qr.MultiplyTriangle(n, unit.data());
-  triangle = unit;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(BandedQr::kRankTolerance);
-  decomposition.compute(triangle);
-  result->control_points += decomposition.solve(Eigen::MatrixXd(qr.TriangleRightHandSide()));
-  result->rank = static_cast<int>(decomposition.rank());
-  result->method = "complete orthogonal decomposition";
-}
-
-/// Conjugate gradients on the normal equations (CGLS, Hestenes & Stiefel 1952) from the start:
-/// moves are sums of rows of A, so the minimiser reached is the one nearest to the start. Ends when
-/// A'r is as small as its rounding, or after 10 n steps, which is then said.
-void SolveIteratively(const RowSource& source, NearestSolution* result) {
-  const BandedRows rows({&source});
-  Points& p = result->control_points;
-  const auto make_residuals = [&rows, &p](const Points& at) {
-    Points residuals(rows.shape().num_rows, p.cols());
-    rows.Residuals(at.data(), residuals.data());
-    return residuals;
-  };
-  const auto transposed = [&rows, &p](const Points& r) {
-    Points product = Points::Zero(p.rows(), p.cols());
-    rows.AddTransposedProduct(r.data(), product.data());
-    return product;
-  };
-  const Points data = make_residuals(Points::Zero(p.rows(), p.cols()));
-  Points bound = Points::Zero(p.rows(), p.cols());
-  rows.AddRoundingBound(p.data(), bound.data());
-  const double floor = std::numeric_limits<double>::epsilon() * bound.norm();
-  Points residuals = make_residuals(p);
-  Points direction = transposed(residuals);
-  double squared = direction.squaredNorm();
-  const int max_steps = 10 * static_cast<int>(p.rows());
-  int step = 0;
-  while (squared > floor * floor && step < max_steps) {
-    ++step;
-    const Points product = data - make_residuals(direction);
-    const double length = squared / product.squaredNorm();
-    if (!std::isfinite(length)) break;
-    p += length * direction;
-    residuals -= length * product;
-    const Points next = transposed(residuals);
-    const double next_squared = next.squaredNorm();
-    direction = next + (next_squared / squared) * direction;
-    squared = next_squared;
-  }
-  // Without a number there is no minimiser: the caller says so.
-  if (!std::isfinite(squared)) p.setConstant(std::numeric_limits<double>::quiet_NaN());
-  result->method = "CGLS, " + std::to_string(step) + " steps";
-  if (squared > floor * floor) result->method += ", not settled";
-}
-
 }  // namespace
 
 NearestSolution SolveNearest(const RowSource& rows, const Points& start) {
-  const int n = rows.shape().num_columns;
+  const RowShape shape = rows.shape();
   NearestSolution result;
   result.control_points = start;
   const BandedQr qr = Factor(rows);
   result.diagonal_ratio = qr.DiagonalRatio();
   if (qr.full_rank()) {
     qr.Solve(&result.control_points);
-    result.rank = n;
+    result.rank = shape.num_columns;
     result.method = "banded QR";
   } else if (!std::isfinite(qr.LargestDiagonal()) || !start.allFinite()) {
     result.diagonal_ratio = 0.0;
   } else {
-    if (n <= kMaxDenseColumns) {
-      SolveDense(Factor(ShiftedRows(rows, start)), n, &result);
-    } else {
-      SolveIteratively(rows, &result);
-      result.rank = -1;
-    }
+    LeastNormFronts fronts(BandedQr::kRankTolerance * qr.LargestDiagonal(), shape.dimension);
+    Stretches stretches(shape, start);
+    rows.Stream(&stretches);
+    stretches.Eliminate(&fronts);
+    result.control_points += fronts.Solve(shape.num_columns);
+    result.rank = fronts.rank();
+    result.method = "minimum norm, front by front";
   }
-  result.unique = result.rank == n;
+  result.unique = result.rank == shape.num_columns;
   if (result.method.empty() || !result.control_points.allFinite()) {
     result.control_points = start;
     result.rank = -1;

@@ -1,8 +1,6 @@
 #include "tools/fit_summary.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "experiments/short_number.h"
 
@@ -105,10 +103,9 @@ bool ReachedTarget(const RunResult& run, const RunSpec& spec, const FitReport& r
   if (reason != StopReason::kLineSearchEnded && reason != StopReason::kNativeStop) return false;
   const double asked = spec.mode == Mode::kRace ? spec.gradient_tolerance * run.start_gradient_norm
                                                 : spec.native_gradient;
-  const double seen = std::sqrt(std::numeric_limits<double>::epsilon()) * run.start_gradient_norm;
   Claim claim = ClaimOf(run, spec);
   claim.minimum = true;
-  claim.gradient_target = std::max(asked, seen);
+  claim.gradient_target = std::max(asked, run.line_search_floor);
   if (report.audited) return Verify(claim, report.audit).holds;
   return run.gradient_norm <= claim.gradient_target;
 }

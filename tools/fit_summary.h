@@ -13,8 +13,8 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
                        const FitReport& report, const std::vector<std::string>& files);
 
 /// The run reached what was asked: it says so itself (IsSuccess), or its line search or its library
-/// ended it first and the audit finds |g| small enough: at most sqrt(eps) |g(start)|, below which a
-/// fall of E can no longer be seen in E itself, or what was asked, if that is more.
+/// ended it first and the audit finds |g| small enough: at most RunResult::line_search_floor, below
+/// which a fall of E can no longer be seen in E itself, or what was asked, if that is more.
 bool ReachedTarget(const RunResult& run, const RunSpec& spec, const FitReport& report);
 
 /// One sentence for a run that did not.

@@ -83,14 +83,14 @@ class SleepingSolver : public Solver {
 };
 int SleepingSolver::num_runs = 0;
 
-void RegisterSleepingSolver() {
-  if (SolverRegistry::Global().Find("sleeping") == nullptr) {
-    SolverRegistry::Global().Register(MakeSolverEntry<SleepingSolver>());
-  }
-}
+/// Registered while it lives: other tests run over all registered solvers.
+struct WithSleepingSolver {
+  WithSleepingSolver() { SolverRegistry::Global().Register(MakeSolverEntry<SleepingSolver>()); }
+  ~WithSleepingSolver() { SolverRegistry::Global().Remove("sleeping"); }
+};
 
 TEST(Compare, SaysWhatIsWrongBeforeAnythingRuns) {
-  RegisterSleepingSolver();
+  const WithSleepingSolver registered;
   SleepingSolver::num_runs = 0;
   ComparisonResult result;
   std::string error;
@@ -143,7 +143,7 @@ TEST(Compare, KeepsTheReasonOfASkippedRow) {
 }
 
 TEST(Compare, TakesMediansOfInterleavedRepetitions) {
-  RegisterSleepingSolver();
+  const WithSleepingSolver registered;
   SleepingSolver::num_runs = 0;
   ComparisonSpec spec = Spec("rhino", "sleeping,banded_cholesky", 3);
   std::vector<std::string> running;
@@ -163,7 +163,7 @@ TEST(Compare, TakesMediansOfInterleavedRepetitions) {
 }
 
 TEST(Compare, MarksAClaimThatFailsItsAudit) {
-  RegisterSleepingSolver();
+  const WithSleepingSolver registered;
   const ComparisonResult result = Compared(Spec("rhino", "sleeping"));
   EXPECT_TRUE(result.rows[0].report.audited);
   EXPECT_FALSE(result.rows[0].report.verdict.holds);

@@ -103,4 +103,3 @@ std::vector<ContractProblem> TwoProblems() {
 }
 
 }  // namespace batten
-

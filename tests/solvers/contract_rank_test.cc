@@ -108,15 +108,15 @@ INSTANTIATE_TEST_SUITE_P(Solvers, NearestToTheStart,
                            return name;
                          });
 
-TEST(SolutionNearestToTheStart, OfManyControlPointsIsFoundByIteration) {
-  // Above 500 columns the direct solvers iterate. A point at every second knot: A A' is circulant
+TEST(SolutionNearestToTheStart, OfManyControlPointsIsTheOneThatConjugateGradientsFind) {
+  // A point at every second knot: A A' is circulant
   // with 1/2 on its diagonal and 1/36 beside it, so that singular values of A are above 2/3.
   FitSpec spec = MakeSpec(3, true, 600);
   spec.parameters = Parameterization::kUniform;
   const auto problem = MakeFit(WithoutWeights(MakeNoisyLoop(300, 2, 7)), spec);
   const SolverTrial qr(*problem, "banded_qr");
   const SolverTrial cg(*problem, "cg");
-  EXPECT_THAT(qr.outcome.message, HasSubstr("nearest to the start (CGLS"));
+  EXPECT_THAT(qr.outcome.message, HasSubstr("nearest to the start (minimum norm"));
   EXPECT_TRUE(IsSuccess(cg.outcome.reason));
   // g(P) = 2 A'A (P - P*) on the row space, where P - P* is.
   const double gradients = qr.context.gradient_norms().back() + cg.context.gradient_norms().back();
@@ -124,6 +124,28 @@ TEST(SolutionNearestToTheStart, OfManyControlPointsIsFoundByIteration) {
   EXPECT_LT((qr.x - cg.x).norm(), 0.5 * gradients / (4.0 / 9.0) + rounding);
   const Eigen::VectorXd moved = qr.x - problem->start();
   EXPECT_GT(moved.norm(), 1e3 * (qr.x - cg.x).norm());
+}
+
+TEST(SolutionNearestToTheStart, OfARealCoastWithUnevenPointsHasTheLeastEnergy) {
+  // Spans with none, one and many of 3,697 points side by side, points next to knots: singular
+  // values at every size down to the tolerance. The reference goes another way: cg, never above it.
+  for (const Parameterization rule : {Parameterization::kUniform, Parameterization::kChordLength,
+                                      Parameterization::kCentripetal}) {
+    for (const int n : {3000, 5000}) {
+      FitSpec spec = MakeSpec(3, true, n);
+      spec.parameters = rule;
+      const auto problem = MakeFileFit("coasts/great_britain_10m.csv", spec);
+      const SolverTrial qr(*problem, "banded_qr");
+      const SolverTrial cg(*problem, "cg", {3000});
+      SCOPED_TRACE(n);
+      TestContext context(*problem);
+      Objective objective(problem.get(), nullptr);
+      const double energy = context.Energy(qr.x);
+      EXPECT_LE(energy, context.Energy(cg.x) + 1e-15 * context.Energy(problem->start()));
+      // The audit's bound on what rounding leaves of |g|.
+      EXPECT_LE(qr.context.gradient_norms().back(), 8 * objective.GradientRoundingFloor(qr.x));
+    }
+  }
 }
 
 TEST_P(EverySolver, EndsADeficientFitAtTheLeastEnergy) {

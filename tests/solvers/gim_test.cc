@@ -121,8 +121,9 @@ TEST(Gim, TheRateItSeesIsTheSpectralRadiusItPrints) {
     int first, last;
     double tolerance;
   };
-  // Averaged: eigenvalues crowd at the radius, |g| falls like radius^k k^-a with a of about 1, which
-  // over these iterations is worth (50 / 20)^(-1 / 30). Uniform knots and centripetal parameters: I
+  // Averaged: eigenvalues crowd at the radius, |g| falls like radius^k k^-a with a of about 1,
+  // which over these iterations is worth (50 / 20)^(-1 / 30). Uniform knots and centripetal
+  // parameters: I
   // - A is far from normal, and |g| falls by up to 0.86 an iteration before it falls by 0.714.
   for (const Case& c : {Case{"averaged", 20, 50, 0.03}, Case{"uniform", 90, 105, 0.05}}) {
     FitSpec spec = MakeSpec(3, true, 100);

@@ -1,0 +1,28 @@
+#ifndef BATTEN_SPLINES_NEAREST_SOLUTION_H_
+#define BATTEN_SPLINES_NEAREST_SOLUTION_H_
+
+#include <string>
+
+#include "splines/row_block.h"
+
+namespace batten {
+
+/// The minimiser of ||A P - Q|| that is nearest to `start` (n x d) in the Euclidean norm of control
+/// points, for any rank, in time proportional to n. `method` says what was done:
+/// - "banded QR": A has full rank.
+/// - "minimum norm, front by front": it has not. Stretches of columns are eliminated with column
+///   exchanges, then what separates them; pivots up to BandedQr::kRankTolerance times the largest
+///   diagonal entry of the band's R count as zero.
+/// - "none, ...": rows or start are not finite; the start is returned.
+struct NearestSolution {
+  Points control_points;
+  int rank = -1;        // -1: not known, with method "none, ..."
+  bool unique = false;  // rank == n
+  double diagonal_ratio = 0.0;
+  std::string method;
+};
+NearestSolution SolveNearest(const RowSource& rows, const Points& start);
+
+}  // namespace batten
+
+#endif  // BATTEN_SPLINES_NEAREST_SOLUTION_H_
