@@ -114,7 +114,7 @@ bool CurveFit::ChooseKnots(std::string* error) {
   return true;
 }
 
-void CurveFit::Scale() {
+bool CurveFit::Scale(std::string* error) {
   const int d = dimension();
   double low[kMaxDimension];
   double high[kMaxDimension];
@@ -129,11 +129,17 @@ void CurveFit::Scale() {
   }
   double side = 0.0;
   for (int c = 0; c < d; ++c) side = std::max(side, high[c] - low[c]);
+  if (side > 0.0 && side < kSmallestSpread) {
+    *error = "the data points spread over " + NumberText(side) + "; allowed: 0 or at least " +
+             NumberText(kSmallestSpread) + ", so that squares of residuals do not underflow";
+    return false;
+  }
   setting_.dimension = dimension();
   size_ = side > 0.0 ? side : 1.0;
   // A power of two no smaller than the longest side: dividing by it rounds nothing.
   setting_.scale = std::exp2(-std::ceil(std::log2(size_)));
   for (int c = 0; c < dimension(); ++c) setting_.center[c] = low[c] + 0.5 * (high[c] - low[c]);
+  return true;
 }
 
 /// Each control point starts on the polyline through the data in the order of their parameters, at
@@ -205,7 +211,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     return nullptr;
   }
   if (fit->spec_.terms.empty()) fit->spec_.terms.push_back({"interpolation", {}, nullptr});
-  fit->Scale();
+  if (!fit->Scale(error)) return nullptr;
   fit->sites_.size = static_cast<int>(fit->parameters_.size());
   fit->sites_.parameters = fit->parameters_.data();
   fit->sites_.points = fit->data_.points.data();
@@ -218,6 +224,11 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
       std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
   problem->AddVariables("control_points", fit->Variables(fit->StartPoints()));
   for (const NameSpec& name : fit->spec_.terms) {
+    for (const Problem::TermInstance& other : problem->terms()) {
+      if (other.name != name.ToString()) continue;
+      *error = "term " + other.name + " is given twice; give it once, with the sum of the weights";
+      return nullptr;
+    }
     const Term* term = nullptr;
     OptionValues options;
     if (!TermRegistry::Global().Resolve(name, &term, &options, error)) return nullptr;

@@ -16,6 +16,9 @@
 namespace batten {
 
 inline constexpr int kMaxControlPoints = 10'000'000;
+/// Least longest side of the data's box, unless it is 0: squares of rounding errors of it are
+/// normal numbers.
+inline constexpr double kSmallestSpread = 1e-130;
 
 /// What is to be fitted to a data set; every field as in problem files and flags.
 struct FitSpec {
@@ -61,7 +64,7 @@ class CurveFit {
   CurveFit(DataSet data, FitSpec spec) : spec_(std::move(spec)), data_(std::move(data)) {}
   bool ChooseParameters(std::string* error);
   bool ChooseKnots(std::string* error);
-  void Scale();
+  bool Scale(std::string* error);
   Points StartPoints() const;
 
   FitSpec spec_;

@@ -1,9 +1,34 @@
 #include "solvers/banded_qr.h"
 
+#include "problems/fit_problem.h"
 #include "splines/banded_qr.h"
 #include "splines/nearest_solution.h"
+#include "splines/schoenberg_whitney.h"
 
 namespace batten {
+
+namespace {
+
+/// Which control points lack data, where a fit of data points alone does.
+std::string ShortageText(const Problem& problem) {
+  const CurveFit* fit = problem.curve_fit();
+  if (fit == nullptr) return "";
+  std::vector<double> parameters;
+  for (Eigen::Index i = 0; i < fit->parameters().size(); ++i) {
+    const bool counts = !fit->data().weights.has_value() || (*fit->data().weights)[i] > 0.0;
+    if (counts) parameters.push_back(fit->parameters()[i]);
+  }
+  const DataShortage shortage = LargestDataShortage(fit->basis(), std::move(parameters));
+  if (shortage.num_control_points == 0) return "";
+  const int first = shortage.first_control_point;
+  const int n = fit->basis().num_control_points();
+  return "fail: control points " + std::to_string(first) + " to " +
+         std::to_string((first + shortage.num_control_points - 1) % n) + " have " +
+         std::to_string(shortage.num_parameters) + " distinct parameters for " +
+         std::to_string(shortage.num_control_points);
+}
+
+}  // namespace
 
 SolverInfo BandedQrSolver::ClassInfo() {
   SolverInfo info;
@@ -34,12 +59,14 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
   context->Note("smallest over largest diagonal entry of R", NumberText(solution.diagonal_ratio));
   context->Iterate(*x);
   if (solution.unique) return {StopReason::kSolved, ""};
-  return {StopReason::kSolved,
-          "the minimum is not unique: " +
-              (solution.rank < 0 ? std::string("rank below ")
-                                 : "rank " + std::to_string(solution.rank) + " of ") +
-              std::to_string(view.num_points()) + "; this is the solution nearest to the start (" +
-              solution.method + ")"};
+  context->OffTheClock([&] {
+    const std::string shortage = ShortageText(objective->problem());
+    if (!shortage.empty()) context->Note("Schoenberg-Whitney conditions", shortage);
+  });
+  return {StopReason::kSolved, "the minimum is not unique: rank " + std::to_string(solution.rank) +
+                                   " of " + std::to_string(view.num_points()) +
+                                   "; this is the solution nearest to the start (" +
+                                   solution.method + ")"};
 }
 
 }  // namespace batten

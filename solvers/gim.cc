@@ -12,6 +12,9 @@
 namespace batten {
 namespace {
 
+/// Without options.
+std::string NameOf(const std::string& term) { return term.substr(0, term.find('/')); }
+
 /// Indices of `values` in increasing order of value.
 std::vector<int> SortedOrder(const std::vector<double>& values) {
   std::vector<int> order(values.size());
@@ -89,7 +92,7 @@ std::string GimSolver::WhyUnsupported(const Objective& objective) const {
   const Problem& problem = objective.problem();
   const CurveFit* fit = problem.curve_fit();
   if (fit == nullptr || problem.terms().size() != 1 || problem.terms()[0].family->weight() != 1.0 ||
-      fit->data().weights.has_value() || problem.terms()[0].name.rfind("interpolation", 0) != 0) {
+      fit->data().weights.has_value() || NameOf(problem.terms()[0].name) != "interpolation") {
     return "gim moves control points by residuals of the interpolation term alone, without "
            "weights; "
            "use lspia";

@@ -133,11 +133,8 @@ Front LeastNormFronts::Eliminate(const std::vector<const Front*>& parts,
     const MatrixXd upper = split.rows().topLeftCorner(rank, num_interior);
     const Eigen::HouseholderQR<MatrixXd> transposed(upper.transpose());
     v = transposed.householderQ();
-    transposed.matrixQR()
-        .topRows(rank)
-        .triangularView<Eigen::Upper>()
-        .transpose()
-        .solveInPlace(determined);
+    transposed.matrixQR().topRows(rank).triangularView<Eigen::Upper>().transpose().solveInPlace(
+        determined);
   }
   rank_ += static_cast<int>(rank);
   Record record;

@@ -17,15 +17,14 @@ struct Front {
   Eigen::MatrixXd second;
 };
 
-/// Eliminates the unknowns of a lexicographic least-squares problem front by front (as a multifrontal
-/// QR does, Duff & Reid, ACM TOMS 9, 1983), each with column exchanges: which unknowns are
-/// determined is decided among all that a front eliminates together, since a decision column by
+/// Eliminates the unknowns of a lexicographic least-squares problem front by front (as a
+/// multifrontal QR does, Duff & Reid, ACM TOMS 9, 1983), each with column exchanges: which unknowns
+/// are determined is decided among all that a front eliminates together, since a decision column by
 /// column from the left amounts to shooting and loses all digits. Internal to splines/.
 class LeastNormFronts {
  public:
   /// Pivots up to `threshold` are zero. `dimension`: of the right-hand sides.
-  LeastNormFronts(double threshold, int dimension)
-      : threshold_(threshold), dimension_(dimension) {}
+  LeastNormFronts(double threshold, int dimension) : threshold_(threshold), dimension_(dimension) {}
 
   /// The fronts added up, all their unknowns but those in `kept` eliminated, which no other front
   /// may have: a front in the others, and in those whose elimination has to wait for a better pivot

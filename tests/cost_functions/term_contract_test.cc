@@ -51,12 +51,14 @@ class EveryTerm : public ::testing::TestWithParam<std::string> {
   template <typename Test>
   void ForEachFamily(Test test) {
     int num_families = 0;
-    for (const int degree : {1, 2, 3, 5, 9}) {
+    int num_fits = 0;
+    for (int degree = 1; degree <= kMaxDegree; ++degree) {
       for (const EndKnots ends :
            {EndKnots::kEndInterpolating, EndKnots::kFloating, EndKnots::kPeriodic}) {
-        const SplineKind kind = {degree, ends, false};
-        for (const int n : {degree == 3 && kind.periodic() ? 2 : degree + 4, degree + 9}) {
-          const int dimension = 1 + num_families % kMaxDimension;
+        for (const bool uniform : {false, true}) {
+          const SplineKind kind = {degree, ends, uniform};
+          const int n = kind.periodic() && uniform ? 1 + degree / 2 : degree + 4 + (degree % 3) * 3;
+          const int dimension = 1 + num_fits++ % kMaxDimension;
           const ExampleFit fit(MakeBasis(kind, n, &random_), dimension, 11, n % 2 == 0, &random_);
           for (const std::string& options : OptionTexts()) {
             SCOPED_TRACE(kind.Name() + " n = " + std::to_string(n) +

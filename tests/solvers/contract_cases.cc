@@ -57,21 +57,21 @@ std::vector<ContractProblem> LeastSquaresProblems() {
                           return MakeFit(weighted ? data : WithoutWeights(data), spec);
                         }});
   };
-  for (const int degree : {1, 2, 3, 5, 9}) {
+  for (int degree = 1; degree <= kMaxDegree; ++degree) {
     for (const KnotRule knots : {KnotRule::kUniform, KnotRule::kAveraged}) {
-      for (const bool closed : {true, false}) {
-        FitSpec spec = MakeSpec(degree, closed, 19);
+      for (const EndKnots ends :
+           {EndKnots::kPeriodic, EndKnots::kEndInterpolating, EndKnots::kFloating}) {
+        const bool closed = ends == EndKnots::kPeriodic;
+        FitSpec spec = MakeSpec(degree, closed, ends == EndKnots::kFloating ? 15 : 19);
         spec.knots = knots;
+        if (!closed) spec.ends = ends;
         add(spec, 60);
       }
-      FitSpec spec = MakeSpec(degree, false, 15);
-      spec.knots = knots;
-      spec.ends = EndKnots::kFloating;
-      add(spec, 60);
     }
   }
   // The basis wraps onto itself, or its band overlaps its corner.
-  for (const auto& [degree, n] : {std::pair(3, 6), {3, 3}, {3, 1}, {2, 4}, {5, 2}, {9, 12}}) {
+  for (const auto& [degree, n] :
+       {std::pair(3, 6), {3, 3}, {3, 1}, {2, 4}, {4, 2}, {5, 2}, {7, 8}, {9, 12}}) {
     add(MakeSpec(degree, true, n), 30);
   }
   return problems;
@@ -79,7 +79,7 @@ std::vector<ContractProblem> LeastSquaresProblems() {
 
 std::vector<ContractProblem> InterpolationProblems() {
   std::vector<ContractProblem> problems;
-  for (const int degree : {1, 2, 3, 5}) {
+  for (int degree = 1; degree <= kMaxDegree; ++degree) {
     for (const bool closed : {true, false}) {
       const int d = 1 + static_cast<int>(problems.size() % 4);
       problems.push_back(
@@ -97,6 +97,7 @@ std::vector<ContractProblem> InterpolationProblems() {
 }
 
 std::vector<ContractProblem> TwoProblems() {
+  // The cubic clamped curve.
   return {{"weighted closed curve",
            [] { return MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17)); }},
           InterpolationProblems()[5]};
