@@ -48,10 +48,10 @@ const Problem& FitOfSizes(bool static_sizes) { return static_sizes ? Fit() : Run
 
 /// Limit of everything that has to look at the data: one pass over points and parameters.
 void ReadInput(benchmark::State& state) {
-  const DataSet& data = Fit().curve_fit()->data();
+  const CurveFit& fit = *Fit().curve_fit();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(data.points.colwise().sum().eval());
-    benchmark::DoNotOptimize(data.parameters->sum());
+    benchmark::DoNotOptimize(fit.data().points.colwise().sum().eval());
+    benchmark::DoNotOptimize(fit.parameters().sum());
   }
   ReportPerPoint(state, kPoints);
 }

@@ -3,11 +3,33 @@
 #include <algorithm>
 #include <numeric>
 
+#include "splines/parameterization.h"
+
 namespace batten {
 
-void GroupBySpan(const BsplineBasis& basis, Sites* sites) {
+namespace {
+
+/// Parameters that do not decrease: looked at only around the knots.
+void GroupSorted(const BsplineBasis& basis, Sites* sites) {
+  const double* const t = sites->parameters;
+  int span = basis.first_span();
+  for (int begin = 0; begin < sites->size;) {
+    span = basis.FindSpanFrom(span, t[begin]);
+    const double next_knot = basis.knots()[static_cast<std::size_t>(span) + 1];
+    // The end of an open domain belongs to the span before it.
+    const bool last = !basis.periodic() && next_knot >= basis.domain_end();
+    const auto end = last ? sites->size : FirstNotBelow(t, begin, sites->size, next_knot);
+    sites->groups.push_back({span, begin, static_cast<int>(end)});
+    begin = static_cast<int>(end);
+  }
+}
+
+}  // namespace
+
+void GroupBySpan(const BsplineBasis& basis, bool nondecreasing, Sites* sites) {
   sites->order.clear();
   sites->groups.clear();
+  if (nondecreasing) return GroupSorted(basis, sites);
   const auto size = static_cast<std::size_t>(sites->size);
   const auto add = [sites](int span, int site) {
     if (sites->groups.empty() || sites->groups.back().span != span) {

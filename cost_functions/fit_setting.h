@@ -27,8 +27,10 @@ struct Sites {
   int item(int site) const { return order.empty() ? site : order[static_cast<std::size_t>(site)]; }
 };
 
-/// Sorts items by span: one pass where parameters already are in order of their spans.
-void GroupBySpan(const BsplineBasis& basis, Sites* sites);
+/// Sorts items by span. Parameters that do not decrease, which the caller may know already, are
+/// only looked at around the knots; others cost one pass where they are in the order of their
+/// spans.
+void GroupBySpan(const BsplineBasis& basis, bool nondecreasing, Sites* sites);
 
 /// What a term is told about the fit: the spline space, the data, and where the control points
 /// stand in x. Inside, data are (point - center) * scale.

@@ -236,8 +236,8 @@ class FunctorKernel {
       variables[j] = Form::Variable(j);
       points[j] = &variables[j];
     }
-    alignas(32) double coefficients[kOrderStorage * kMaxRowsPerBlock];
-    alignas(32) double right_hand_sides[kDimensionStorage * kMaxRowsPerBlock];
+    // Right-hand sides behind the coefficients: consumers have their fastest loops for that.
+    alignas(32) double rows[(kOrderStorage + kDimensionStorage) * kMaxRowsPerBlock];
     for (const Sites::Group& group : sites_.groups) {
       const SpanBasis<P, Pack> span_basis(basis_.degree(), basis_.knots().data(), group.span);
       for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
@@ -245,10 +245,10 @@ class FunctorKernel {
         block.first_column = basis_.ControlPointIndex(group.span - basis_.degree());
         block.num_rows = std::min(kMaxRowsPerBlock, group.end - begin);
         block.stride = (block.num_rows + kRowPack - 1) / kRowPack * kRowPack;
-        block.coefficients = coefficients;
+        double* const right_hand_sides = rows + order() * block.stride;
+        block.coefficients = rows;
         block.right_hand_sides = right_hand_sides;
-        FillRows(span_basis, group.span, points, begin, block, root_factor, coefficients,
-                 right_hand_sides);
+        FillRows(span_basis, group.span, points, begin, block, root_factor, rows, right_hand_sides);
         consumer->Consume(block);
       }
     }
@@ -271,18 +271,36 @@ class FunctorKernel {
     return rho[0];
   }
 
+  /// Products with weights and factors that are 1 are left out when compiling, not when running.
   void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points,
                 int begin, const RowBlock& block, double root_factor, double* coefficients,
                 double* right_hand_sides) const {
+    if (sites_.weights == nullptr) {
+      FillRowsWith<false>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+    } else {
+      FillRowsWith<true>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+    }
+    if (root_factor == 1.0) return;
+    for (int k = 0; k < order() * block.stride; ++k) coefficients[k] *= root_factor;
+    for (int k = 0; k < dimension() * block.stride; ++k) right_hand_sides[k] *= root_factor;
+  }
+
+  /// Flattened: with the basis and the functor called for each pack, rows cost twice as much.
+  template <bool kWeighted>
+  __attribute__((flatten)) void FillRowsWith(const SpanBasis<P, Pack>& span_basis, int span,
+                                             const Form* const* points, int begin,
+                                             const RowBlock& block, double* coefficients,
+                                             double* right_hand_sides) const {
     // Whole packs of neighbours in memory first; then the rest, a lane at a time.
     const int in_a_row = sites_.order.empty() ? block.num_rows / kRowPack * kRowPack : 0;
     for (int first = 0; first < in_a_row; first += kRowPack) {
-      FillPack<true>(span_basis, span, points, begin + first, 0, root_factor, block.stride,
-                     coefficients + first, right_hand_sides + first);
+      FillPack<true, kWeighted>(span_basis, span, points, begin + first, 0, block.stride,
+                                coefficients + first, right_hand_sides + first);
     }
     for (int first = in_a_row; first < block.stride; first += kRowPack) {
-      FillPack<false>(span_basis, span, points, begin + first, begin + block.num_rows - 1,
-                      root_factor, block.stride, coefficients + first, right_hand_sides + first);
+      FillPack<false, kWeighted>(span_basis, span, points, begin + first,
+                                 begin + block.num_rows - 1, block.stride, coefficients + first,
+                                 right_hand_sides + first);
     }
     for (int i = block.num_rows; i < block.stride; ++i) {
       for (int j = 0; j < order(); ++j) coefficients[j * block.stride + i] = 0.0;
@@ -304,11 +322,11 @@ class FunctorKernel {
 
   /// The rows of kRowPack sites. Coordinate by coordinate the functor sees a curve with one
   /// coordinate, whose control point j is the variable x_j.
-  template <bool kInARow>
+  template <bool kInARow, bool kWeighted>
   inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, Pack>& span_basis,
                                                       int span, const Form* const* points,
-                                                      int first, int last, double root_factor,
-                                                      int stride, double* coefficients,
+                                                      int first, int last, int stride,
+                                                      double* coefficients,
                                                       double* right_hand_sides) const {
     Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
     const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
@@ -319,7 +337,7 @@ class FunctorKernel {
                                   Functor::kDerivatives, site.mutable_basis());
     }
     Pack root(1.0);
-    if (sites_.weights != nullptr) {
+    if constexpr (kWeighted) {
       root = PackOf<kInARow>(sites_.weights, 1, first, last);
       root = root.Map([](double weight) { return std::sqrt(weight); });
     }
@@ -335,10 +353,10 @@ class FunctorKernel {
       }
       site.mutable_point()[0] = point;
       functor_(site, points, &result);
-      (-root_factor * result.constant).Store(right_hand_sides + c * stride);
+      (-result.constant).Store(right_hand_sides + c * stride);
     }
     for (int j = 0; j < order(); ++j) {
-      (root_factor * result.coefficient[j]).Store(coefficients + j * stride);
+      result.coefficient[j].Store(coefficients + j * stride);
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace batten {
@@ -101,6 +102,9 @@ bool CurveFit::ChooseKnots(std::string* error) {
   spec_.control_points = basis_->num_control_points();
   const double begin = basis_->domain_begin();
   const double end = basis_->domain_end();
+  sorted_ = IsNondecreasing(parameters_.data(), parameters_.size());
+  const double last = parameters_[parameters_.size() - 1];
+  if (sorted_ && parameters_[0] >= begin && (spec_.closed ? last < end : last <= end)) return true;
   for (Eigen::Index i = 0; i < parameters_.size(); ++i) {
     const double t = parameters_[i];
     if (t >= begin && (spec_.closed ? t < end : t <= end)) continue;
@@ -110,25 +114,26 @@ bool CurveFit::ChooseKnots(std::string* error) {
       return false;
     }
     parameters_[i] = basis_->Wrap(t);
+    sorted_ = false;
   }
   return true;
 }
 
 bool CurveFit::Scale(std::string* error) {
-  const int d = dimension();
-  double low[kMaxDimension];
-  double high[kMaxDimension];
-  std::copy_n(data_.points.data(), d, low);
-  std::copy_n(data_.points.data(), d, high);
-  const double* point = data_.points.data();
-  for (Eigen::Index i = 0; i < data_.points.rows(); ++i, point += d) {
-    for (int c = 0; c < d; ++c) {
-      low[c] = std::min(low[c], point[c]);
-      high[c] = std::max(high[c], point[c]);
+  // Points without weight say nothing of the size of the fit.
+  const Eigen::VectorXd* const weights = data_.weights.has_value() ? &*data_.weights : nullptr;
+  Eigen::RowVectorXd low = data_.points.colwise().minCoeff();
+  Eigen::RowVectorXd high = data_.points.colwise().maxCoeff();
+  if (weights != nullptr) {
+    low.setConstant(std::numeric_limits<double>::infinity());
+    high = -low;
+    for (Eigen::Index i = 0; i < data_.points.rows(); ++i) {
+      if ((*weights)[i] == 0.0) continue;
+      low = low.cwiseMin(data_.points.row(i));
+      high = high.cwiseMax(data_.points.row(i));
     }
   }
-  double side = 0.0;
-  for (int c = 0; c < d; ++c) side = std::max(side, high[c] - low[c]);
+  const double side = (high - low).maxCoeff();
   if (side > 0.0 && side < kSmallestSpread) {
     *error = "the data points spread over " + NumberText(side) + "; allowed: 0 or at least " +
              NumberText(kSmallestSpread) + ", so that squares of residuals do not underflow";
@@ -154,27 +159,26 @@ Points CurveFit::StartPoints() const {
   const auto m = static_cast<int>(parameters_.size());
   // Empty while the data already are in the order of their parameters, as they mostly are.
   std::vector<int> order;
-  if (!std::is_sorted(parameters_.data(), parameters_.data() + m)) {
+  Eigen::VectorXd reordered;
+  if (!sorted_) {
     order.resize(static_cast<std::size_t>(m));
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [this](int a, int b) { return parameters_[a] < parameters_[b]; });
+    reordered.resize(m);
+    for (int k = 0; k < m; ++k) reordered[k] = parameters_[order[static_cast<std::size_t>(k)]];
   }
+  const Eigen::VectorXd& sorted = order.empty() ? parameters_ : reordered;
   const auto item = [&order](int k) {
     return order.empty() ? k : order[static_cast<std::size_t>(k)];
   };
+  std::ptrdiff_t near = 0;  // abscissae mostly grow from one control point to the next
   const auto first_above = [&](double t) {
-    int low = 0;
-    int high = m;
-    while (low < high) {
-      const int middle = low + (high - low) / 2;
-      if (parameters_[item(middle)] > t) {
-        high = middle;
-      } else {
-        low = middle + 1;
-      }
-    }
-    return low;
+    if (sorted[near] > t) near = 0;
+    const double above = std::nextafter(t, std::numeric_limits<double>::infinity());
+    const std::ptrdiff_t found = FirstNotBelow(sorted.data(), near, m, above);
+    near = std::min<std::ptrdiff_t>(found, m - 1);
+    return static_cast<int>(found);
   };
   const double period = basis_->domain_length();
   for (int j = 0; j < n; ++j) {
@@ -216,7 +220,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   fit->sites_.parameters = fit->parameters_.data();
   fit->sites_.points = fit->data_.points.data();
   fit->sites_.weights = fit->data_.weights.has_value() ? fit->data_.weights->data() : nullptr;
-  GroupBySpan(*fit->basis_, &fit->sites_);
+  GroupBySpan(*fit->basis_, fit->sorted_, &fit->sites_);
   fit->setting_.basis = &*fit->basis_;
   fit->setting_.data = &fit->sites_;
 

@@ -71,6 +71,7 @@ class CurveFit {
   DataSet data_;
   std::optional<BsplineBasis> basis_;
   Eigen::VectorXd parameters_;
+  bool sorted_ = false;  // parameters_ are known not to decrease
   std::pair<double, double> domain_ = {0.0, 1.0};
   double size_ = 1.0;
   Sites sites_;

@@ -10,7 +10,7 @@ namespace batten {
 
 /// Rows of one window that are folded at a time, at most: square roots and divisions per fold are
 /// then shared by more rows than a block has.
-inline constexpr int kRowsPerFold = 2 * kMaxRowsPerBlock;
+inline constexpr int kRowsPerFold = kMaxRowsPerBlock;
 
 /// Rows to be folded, column by column, coefficients first, then right-hand sides: entry (i, k)
 /// stands at columns[k * stride + i], counted in packs of rows. Internal to splines/.

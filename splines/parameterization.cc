@@ -102,4 +102,27 @@ std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed,
   return parameters;
 }
 
+bool IsNondecreasing(const double* values, std::ptrdiff_t size) {
+  // Without a way out of the inner loop, so that the compiler compares in packs.
+  constexpr std::ptrdiff_t kBlock = 256;
+  for (std::ptrdiff_t begin = 0; begin + 1 < size; begin += kBlock) {
+    const std::ptrdiff_t end = std::min(begin + kBlock, size - 1);
+    long in_order = 0;
+    for (std::ptrdiff_t i = begin; i < end; ++i) in_order += values[i] <= values[i + 1] ? 1 : 0;
+    if (in_order != end - begin) return false;
+  }
+  return size != 1 || !std::isnan(values[0]);
+}
+
+std::ptrdiff_t FirstNotBelow(const double* values, std::ptrdiff_t from, std::ptrdiff_t size,
+                             double bound) {
+  std::ptrdiff_t step = 1;
+  while (from + step < size && values[from + step] < bound) {
+    from += step;
+    step *= 2;
+  }
+  const double* const end = values + std::min(from + step, size);
+  return std::lower_bound(values + from, end, bound) - values;
+}
+
 }  // namespace batten

@@ -1,6 +1,7 @@
 #ifndef BATTEN_SPLINES_PARAMETERIZATION_H_
 #define BATTEN_SPLINES_PARAMETERIZATION_H_
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -23,6 +24,15 @@ bool FromString(const std::string& text, Parameterization* rule);
 /// uniform).
 std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed,
                                             const Points& points, std::string* error);
+
+/// values[i] <= values[i + 1] for all i, in one pass that looks at several at a time; false if one
+/// is not a number.
+bool IsNondecreasing(const double* values, std::ptrdiff_t size);
+
+/// First i >= from with values[i] >= bound, or size; values from `from` on do not decrease. Found
+/// in time of the logarithm of the distance.
+std::ptrdiff_t FirstNotBelow(const double* values, std::ptrdiff_t from, std::ptrdiff_t size,
+                             double bound);
 
 }  // namespace batten
 

@@ -14,7 +14,7 @@ namespace batten {
 /// Both arrays are aligned to 32 bytes, stride is a multiple of kRowPack, and the rows from
 /// num_rows to stride are zero: loops run over whole packs.
 inline constexpr int kRowPack = 4;
-inline constexpr int kMaxRowsPerBlock = 64;
+inline constexpr int kMaxRowsPerBlock = 128;
 
 struct RowBlock {
   int first_column = 0;

@@ -8,7 +8,8 @@
 namespace batten {
 namespace {
 
-/// Distinct parameters, and how many there are below a place; periodic ones go on beyond the domain.
+/// Distinct parameters, and how many there are below a place; periodic ones go on beyond the
+/// domain.
 class ParameterCount {
  public:
   ParameterCount(const BsplineBasis& basis, std::vector<double> parameters)
@@ -64,7 +65,7 @@ DataShortage LargestDataShortage(const BsplineBasis& basis, std::vector<double> 
   // best a is the one with the largest below_support(a) - a.
   const int last = basis.periodic() ? 2 * n - 1 : n - 1;
   const int longest = basis.periodic() ? n - p - 1 : n;  // longer runs see every parameter
-  std::vector<std::pair<long, int>> candidates;           // decreasing values, increasing a
+  std::vector<std::pair<long, int>> candidates;          // decreasing values, increasing a
   std::size_t front = 0;
   for (int b = 0; b <= last && longest > 0; ++b) {
     const long value = below_support(b) - b;

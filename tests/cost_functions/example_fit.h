@@ -12,6 +12,7 @@
 
 #include "cost_functions/block_family.h"
 #include "cost_functions/fit_setting.h"
+#include "splines/parameterization.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -45,7 +46,7 @@ class ExampleFit {
     sites.parameters = parameters.data();
     sites.points = points.data();
     sites.weights = weighted ? weights.data() : nullptr;
-    GroupBySpan(basis, &sites);
+    GroupBySpan(basis, IsNondecreasing(sites.parameters, sites.size), &sites);
   }
   ExampleFit(const ExampleFit&) = delete;
   ExampleFit& operator=(const ExampleFit&) = delete;

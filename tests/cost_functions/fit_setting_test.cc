@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "cost_functions/interpolation.h"
+#include "splines/parameterization.h"
 #include "tests/cost_functions/example_fit.h"
 
 namespace batten {
@@ -19,7 +20,7 @@ Sites SitesAt(const std::vector<double>& parameters, const BsplineBasis& basis) 
   Sites sites;
   sites.size = static_cast<int>(parameters.size());
   sites.parameters = parameters.data();
-  GroupBySpan(basis, &sites);
+  GroupBySpan(basis, IsNondecreasing(sites.parameters, sites.size), &sites);
   return sites;
 }
 
@@ -92,7 +93,7 @@ TEST(GroupBySpan, OfNothingIsNothing) {
 TEST(GroupBySpan, ForgetsAnEarlierGrouping) {
   const std::vector<double> parameters = {2.5, 0.5, 1.5};
   Sites sites = SitesAt(parameters, ThreeSpans());
-  GroupBySpan(ThreeSpans(), &sites);
+  GroupBySpan(ThreeSpans(), IsNondecreasing(sites.parameters, sites.size), &sites);
   ExpectGrouped(sites, ThreeSpans());
 }
 
@@ -128,7 +129,8 @@ TEST(GroupBySpan, ChangesNoEnergyAndNoGradient) {
     sorted.weights[i] = unsorted.weights[order[i]];
     sorted.points.row(i) = unsorted.points.row(order[i]);
   }
-  GroupBySpan(sorted.basis, &sorted.sites);
+  GroupBySpan(sorted.basis, IsNondecreasing(sorted.sites.parameters, sorted.sites.size),
+              &sorted.sites);
   ASSERT_TRUE(sorted.sites.order.empty());
 
   const auto term = MakeInterpolationTerm();

@@ -1,4 +1,5 @@
-// A term's functor is all there is of it: change the functor, and every path of every solver changes.
+// A term's functor is all there is of it: change the functor, and every path of every solver
+// changes.
 #include <gtest/gtest.h>
 
 #include "cost_functions/functor_family.h"

@@ -22,9 +22,8 @@ struct ObjectiveCase {
 std::string NameOf(const ::testing::TestParamInfo<ObjectiveCase>& info) {
   const ObjectiveCase& c = info.param;
   return "Degree" + std::to_string(c.degree) + (c.closed ? "Closed" : "Open") + "Dimension" +
-         std::to_string(c.dimension) + (std::string(c.terms).find(',') != std::string::npos
-                                            ? "TwoTerms"
-                                            : "OneTerm") +
+         std::to_string(c.dimension) +
+         (std::string(c.terms).find(',') != std::string::npos ? "TwoTerms" : "OneTerm") +
          (c.constrained ? "Constrained" : "");
 }
 
@@ -40,8 +39,8 @@ class CompiledAndNot : public ::testing::TestWithParam<ObjectiveCase> {
     for (double& entry : v_) entry = uniform(random);
   }
   static std::unique_ptr<Problem> MakeProblem(const ObjectiveCase& c) {
-    auto problem = MakeFit(MakeNoisyLoop(60, c.dimension, 4),
-                           MakeSpec(c.degree, c.closed, 17, c.terms));
+    auto problem =
+        MakeFit(MakeNoisyLoop(60, c.dimension, 4), MakeSpec(c.degree, c.closed, 17, c.terms));
     if (c.constrained) {
       std::vector<LinearConstraint> constraints;
       for (int k = 0; k < c.dimension; ++k) {
@@ -113,9 +112,9 @@ TEST_P(CompiledAndNot, PartialEnergiesAddUp) {
     const int size = problem_->terms()[t].family->size();
     for (int begin = 0; begin < size; begin += 7) {
       double part = 0.0;
-      ASSERT_EQ(compiled_.PartialEnergy(x_, static_cast<int>(t), begin, std::min(begin + 7, size),
-                                        &part),
-                Status::kOk);
+      ASSERT_EQ(
+          compiled_.PartialEnergy(x_, static_cast<int>(t), begin, std::min(begin + 7, size), &part),
+          Status::kOk);
       EXPECT_GE(part, 0.0);
       sum += part;
     }

@@ -65,7 +65,9 @@ void ExpectMinimized(const Problem& problem, const SolverTrial& trial) {
       std::pow(64 * kEps * dense.a.norm() * (1.0 + dense.condition() * std::sqrt(energy)), 2);
   switch (trial.outcome.reason) {
     case StopReason::kSolved:
-      EXPECT_LE(gap, rounding);
+      // Through the normal equations A P is off by the condition too (Higham, sec. 20.4); what QR
+      // keeps is held against narrower bounds in its own tests.
+      EXPECT_LE(gap, std::pow(64 * kEps * dense.a.norm() * dense.condition(), 2) + rounding);
       break;
     case StopReason::kGradientSmall:
     case StopReason::kRoundingFloor: {

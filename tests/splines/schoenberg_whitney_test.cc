@@ -43,7 +43,7 @@ int LargestMatching(const BsplineBasis& basis, std::vector<double> t) {
   return size;
 }
 
-TEST(LargestDataShortage, IsWhatALargestMatchingLeavesOver) {
+TEST(LargestDataShortage, IsThereExactlyWhereNoMatchingServesAllControlPoints) {
   std::mt19937 random(20240911);
   int num_short = 0;
   for (int round = 0; round < 400; ++round) {
@@ -68,8 +68,11 @@ TEST(LargestDataShortage, IsWhatALargestMatchingLeavesOver) {
     }
     const DataShortage shortage = LargestDataShortage(basis, t);
     const int left_over = n - LargestMatching(basis, t);
-    EXPECT_EQ(shortage.num_control_points - shortage.num_parameters, left_over)
+    // Several runs may lack data: the largest shortage is one of them.
+    const int largest = shortage.num_control_points - shortage.num_parameters;
+    EXPECT_EQ(largest > 0, left_over > 0)
         << kind.Name() << " n = " << n << " m = " << m << " round " << round;
+    EXPECT_LE(largest, left_over) << kind.Name() << " round " << round;
     num_short += left_over > 0 ? 1 : 0;
   }
   EXPECT_GT(num_short, 100);
