@@ -39,6 +39,7 @@ struct FitSetting {
   int dimension = 0;
   double center[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
   double scale = 1.0;            // a power of two
+  double size = 1.0;             // longest side of the data's box, scaled: in (0.5, 1]
   int control_point_offset = 0;  // P_j stands at x[control_point_offset + j * dimension]
   const Sites* data = nullptr;   // the data points at their fixed parameters
   /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).

@@ -10,6 +10,7 @@
 
 #include "cost_functions/functor_ceres.h"
 #include "cost_functions/functor_kernel.h"
+#include "cost_functions/loss.h"
 #include "cost_functions/term.h"
 
 namespace batten {
@@ -229,8 +230,8 @@ class FunctorTerm final : public Term {
   TermInfo Info() const override { return Functor::Info(); }
   std::unique_ptr<BlockFamily> MakeFamily(const FitSetting& setting, const OptionValues& options,
                                           std::string* /*error*/) const override {
-    return std::make_unique<FunctorFamily<Functor>>(setting, Functor(options),
-                                                    options.Real("weight"), MakeLoss(options));
+    return std::make_unique<FunctorFamily<Functor>>(
+        setting, Functor(options), options.Real("weight"), MakeLoss(options, setting.size));
   }
 };
 

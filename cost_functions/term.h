@@ -19,8 +19,7 @@ struct TermInfo {
   std::vector<OptionInfo> options;  ///< Its own; every term also has CommonTermOptions().
 };
 
-/// weight=1 (>= 0), loss=none|huber|cauchy|tukey|soft_l1, loss_scale=1 (in units of the scaled
-/// data).
+/// weight=1, loss=none|huber|cauchy|tukey|soft_l1, loss_scale=1 (in units of the data's size).
 std::vector<OptionInfo> CommonTermOptions();
 
 /// What is registered: makes the blocks of one named term for one fit.
@@ -34,9 +33,6 @@ class Term {
                                                   const OptionValues& options,
                                                   std::string* error) const = 0;
 };
-
-/// Loss of CommonTermOptions(); null for none.
-std::shared_ptr<const ceres::LossFunction> MakeLoss(const OptionValues& options);
 
 /// All registered terms, by name; built-in ones come from the table in term_registry.cc.
 class TermRegistry {

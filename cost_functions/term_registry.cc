@@ -1,6 +1,6 @@
 #include <glog/logging.h>
 
-#include <limits>
+#include <algorithm>
 
 #include "cost_functions/interpolation.h"
 #include "cost_functions/term.h"
@@ -16,23 +16,12 @@ constexpr std::unique_ptr<Term> (*kBuiltInTerms[])() = {
 }  // namespace
 
 std::vector<OptionInfo> CommonTermOptions() {
-  constexpr double kLargest = 1e300;
-  return {OptionInfo::Real("weight", 1.0, 0.0, kLargest, "factor of the term's energy"),
+  return {OptionInfo::Real("weight", 1.0, 0.0, 1e30, "factor of the term's energy"),
           OptionInfo::Word("loss", "none", {"none", "huber", "cauchy", "tukey", "soft_l1"},
                            "robust loss applied to each block's squared residual"),
-          OptionInfo::Real("loss_scale", 1.0, 1e-300, kLargest,
+          OptionInfo::Real("loss_scale", 1.0, 1e-6, 1e6,
                            "residual size at which the loss departs from the square, in units of "
-                           "the data scaled to the unit box")};
-}
-
-std::shared_ptr<const ceres::LossFunction> MakeLoss(const OptionValues& options) {
-  const std::string& loss = options.Word("loss");
-  const double scale = options.Real("loss_scale");
-  if (loss == "huber") return std::make_shared<ceres::HuberLoss>(scale);
-  if (loss == "cauchy") return std::make_shared<ceres::CauchyLoss>(scale);
-  if (loss == "tukey") return std::make_shared<ceres::TukeyLoss>(scale);
-  if (loss == "soft_l1") return std::make_shared<ceres::SoftLOneLoss>(scale);
-  return nullptr;
+                           "the longest side of the data's box")};
 }
 
 TermRegistry& TermRegistry::Global() {
@@ -69,6 +58,14 @@ bool TermRegistry::Resolve(const NameSpec& spec, const Term** term, OptionValues
   }
   if (spec.wrapped != nullptr) {
     *error = "term " + spec.name + " wraps nothing; found :" + spec.wrapped->ToString();
+    return false;
+  }
+  const auto has = [&spec](const char* name) {
+    return std::any_of(spec.options.begin(), spec.options.end(),
+                       [name](const auto& option) { return option.first == name; });
+  };
+  if (has("loss_scale") && !has("loss")) {
+    *error = "term " + spec.name + ": loss_scale is given without a loss; add /loss=NAME";
     return false;
   }
   std::vector<OptionInfo> infos = (*term)->Info().options;

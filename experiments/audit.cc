@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace batten {
@@ -112,7 +113,23 @@ struct Sums {
   std::vector<Real> gradient;   // n x d
   std::vector<Real> rounding;   // its worst case, n x d
   std::vector<int> num_points;  // that each control point moves, n
+  // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
+  // which points near the user's origin may be far out.
+  Real extent[kMostCoordinates] = {};
 };
+
+void MeasureExtent(const AuditedFit& fit, Sums* sums) {
+  for (int c = 0; c < fit.dimension; ++c) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+      if (!fit.weights.empty() && fit.weights[i] == 0.0) continue;
+      low = std::min(low, fit.points[i * fit.dimension + c]);
+      high = std::max(high, fit.points[i * fit.dimension + c]);
+    }
+    if (low < high) sums->extent[c] = static_cast<Real>(high) - low;
+  }
+}
 
 void AddPoint(const AuditedFit& fit, int i, DeBoor* curve, Sums* sums) {
   const int d = fit.dimension;
@@ -126,7 +143,7 @@ void AddPoint(const AuditedFit& fit, int i, DeBoor* curve, Sums* sums) {
   Real squared = 0;
   for (int c = 0; c < d; ++c) {
     squared += residual[c] * residual[c];
-    Real size = std::abs(static_cast<Real>(fit.points[first + c]));
+    Real size = std::abs(static_cast<Real>(fit.points[first + c])) + sums->extent[c];
     for (int j = 0; j <= fit.degree; ++j) {
       size += basis[j] * std::abs(fit.control_points[curve->ControlPoint(j) * d + c]);
     }
@@ -168,6 +185,7 @@ AuditReport Audit(const AuditedFit& fit) {
   sums.gradient.assign(fit.control_points.size(), 0);
   sums.rounding.assign(fit.control_points.size(), 0);
   sums.num_points.assign(curve.num_control_points(), 0);
+  MeasureExtent(fit, &sums);
   for (int i = 0; i < m; ++i) AddPoint(fit, i, &curve, &sums);
 
   AuditReport report;

@@ -139,10 +139,20 @@ bool CurveFit::Scale(std::string* error) {
              NumberText(kSmallestSpread) + ", so that squares of residuals do not underflow";
     return false;
   }
+  if (weights != nullptr) {
+    const double unit = weights->maxCoeff() * side * side;
+    if (side > 0.0 && !(unit >= kSmallestUnit && unit <= 1.0 / kSmallestUnit)) {
+      *error = "the largest weight times the squared spread of the points is " + NumberText(unit) +
+               "; allowed: " + NumberText(kSmallestUnit) + " to " +
+               NumberText(1.0 / kSmallestUnit) + ", so that E can be computed";
+      return false;
+    }
+  }
   setting_.dimension = dimension();
   size_ = side > 0.0 ? side : 1.0;
   // A power of two no smaller than the longest side: dividing by it rounds nothing.
   setting_.scale = std::exp2(-std::ceil(std::log2(size_)));
+  setting_.size = size_ * setting_.scale;
   for (int c = 0; c < dimension(); ++c) setting_.center[c] = low[c] + 0.5 * (high[c] - low[c]);
   return true;
 }
@@ -227,6 +237,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   auto problem =
       std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
   problem->AddVariables("control_points", fit->Variables(fit->StartPoints()));
+  double largest_weight = 0.0;
   for (const NameSpec& name : fit->spec_.terms) {
     for (const Problem::TermInstance& other : problem->terms()) {
       if (other.name != name.ToString()) continue;
@@ -238,7 +249,13 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     if (!TermRegistry::Global().Resolve(name, &term, &options, error)) return nullptr;
     auto family = term->MakeFamily(fit->setting_, options, error);
     if (family == nullptr) return nullptr;
+    largest_weight = std::max(largest_weight, family->weight());
     problem->AddTerm(name.ToString(), std::move(family));
+  }
+  if (largest_weight < kSmallestTermWeight) {
+    *error = "the largest weight of a term is " + NumberText(largest_weight) +
+             "; allowed: at least " + NumberText(kSmallestTermWeight);
+    return nullptr;
   }
   const double scale = fit->setting_.scale;
   problem->SetUnits({1.0 / scale, 1.0 / (scale * scale), 1.0 / scale});

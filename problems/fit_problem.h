@@ -19,6 +19,10 @@ inline constexpr int kMaxControlPoints = 10'000'000;
 /// Least longest side of the data's box, unless it is 0: squares of rounding errors of it are
 /// normal numbers.
 inline constexpr double kSmallestSpread = 1e-130;
+/// The same for the largest of given weights times its square.
+inline constexpr double kSmallestUnit = 1e-270;
+/// Least of the largest weight of a term: with none there is nothing to fit.
+inline constexpr double kSmallestTermWeight = 1e-30;
 
 /// What is to be fitted to a data set; every field as in problem files and flags.
 struct FitSpec {

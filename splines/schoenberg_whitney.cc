@@ -1,15 +1,13 @@
 #include "splines/schoenberg_whitney.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace batten {
 namespace {
 
-/// Distinct parameters, and how many there are below a place; periodic ones go on beyond the
-/// domain.
+/// Distinct parameters, and how many there are below a knot; on periodic splines they go on beyond
+/// the domain, as do the knots.
 class ParameterCount {
  public:
   ParameterCount(const BsplineBasis& basis, std::vector<double> parameters)
@@ -17,20 +15,28 @@ class ParameterCount {
     std::sort(sorted_.begin(), sorted_.end());
     sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
   }
-  int size() const { return static_cast<int>(sorted_.size()); }
-  long Below(double t) const {
-    long turns = 0;
-    if (basis_.periodic()) {
-      turns = std::lround(std::floor((t - basis_.domain_begin()) / basis_.domain_length()));
-      t -= static_cast<double>(turns) * basis_.domain_length();
-    }
-    return turns * size() + (std::lower_bound(sorted_.begin(), sorted_.end(), t) - sorted_.begin());
+  long size() const { return static_cast<long>(sorted_.size()); }
+  long Below(int k) const {
+    return Turns(k) * size() +
+           (std::lower_bound(sorted_.begin(), sorted_.end(), Knot(k)) - sorted_.begin());
   }
-  long UpTo(double t) const {
-    return Below(std::nextafter(t, std::numeric_limits<double>::infinity()));
+  long UpTo(int k) const {
+    return Turns(k) * size() +
+           (std::upper_bound(sorted_.begin(), sorted_.end(), Knot(k)) - sorted_.begin());
   }
 
  private:
+  // Knots outside a periodic domain by their copies inside, which no rounding has moved.
+  long Turns(int k) const {
+    const int n = basis_.num_control_points();
+    return basis_.periodic() ? (k - basis_.degree() + n * kTurnsBefore) / n - kTurnsBefore : 0;
+  }
+  double Knot(int k) const {
+    const auto n = basis_.num_control_points();
+    return basis_.knots()[static_cast<std::size_t>(k - Turns(k) * n)];
+  }
+  static constexpr int kTurnsBefore = kMaxDegree;  // n >= 1: no knot lies farther before the domain
+
   const BsplineBasis& basis_;
   std::vector<double> sorted_;
 };
@@ -47,25 +53,21 @@ DataShortage LargestDataShortage(const BsplineBasis& basis, std::vector<double> 
       worst = {first, size, static_cast<int>(available)};
     }
   };
-  // Knots of control point j, 0 <= j < 2 n on periodic splines.
-  const auto knot = [&](int k) {
-    const int turns = basis.periodic() ? k / n : 0;
-    return basis.knots()[static_cast<std::size_t>(k - turns * n)] + turns * basis.domain_length();
-  };
   // Supports are open, but for the ends of an open curve that are repeated p + 1 times.
+  const std::vector<double>& u = basis.knots();
   const auto below_support = [&](int j) {
-    const bool closed_end = !basis.periodic() && knot(j) == knot(j + p);
-    return closed_end ? count.Below(knot(j)) : count.UpTo(knot(j));
+    const bool closed_end = !basis.periodic() && u[j] == u[j + p];
+    return closed_end ? count.Below(j) : count.UpTo(j);
   };
   const auto to_support_end = [&](int j) {
-    const bool closed_end = !basis.periodic() && knot(j + 1) == knot(j + p + 1);
-    return closed_end ? count.UpTo(knot(j + p + 1)) : count.Below(knot(j + p + 1));
+    const bool closed_end = !basis.periodic() && u[j + 1] == u[j + p + 1];
+    return closed_end ? count.UpTo(j + p + 1) : count.Below(j + p + 1);
   };
   // Of a run a..b: shortage = (b - a + 1) - (to_support_end(b) - below_support(a)). For each b the
   // best a is the one with the largest below_support(a) - a.
   const int last = basis.periodic() ? 2 * n - 1 : n - 1;
-  const int longest = basis.periodic() ? n - p - 1 : n;  // longer runs see every parameter
-  std::vector<std::pair<long, int>> candidates;          // decreasing values, increasing a
+  const int longest = basis.periodic() ? n - p : n;  // longer runs see every parameter
+  std::vector<std::pair<long, int>> candidates;      // decreasing values, increasing a
   std::size_t front = 0;
   for (int b = 0; b <= last && longest > 0; ++b) {
     const long value = below_support(b) - b;

@@ -184,8 +184,12 @@ TEST(CeresLbfgs, StopsWhenTheMonitorSaysNoAndAsksItNoMore) {
 }
 
 TEST(CeresLbfgs, BooksAStartWithoutGradientOnce) {
-  const auto problem =
-      MakeFit(MakeNoisyLoop(30, 2, 10), MakeSpec(3, true, 8, "interpolation/weight=0"));
+  // All points are one, and the start is that point.
+  DataSet points = MakeNoisyLoop(30, 2, 10);
+  points.points.rowwise() = Eigen::RowVector2d(0.25, -3.0);
+  FitSpec spec = MakeSpec(3, true, 8);
+  spec.parameters = Parameterization::kUniform;
+  const auto problem = MakeFit(points, spec);
   for (const char* form : kForms) {
     LbfgsTrial trial(*problem, WithForm(form));
     EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << form;
