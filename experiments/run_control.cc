@@ -192,6 +192,17 @@ StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd
   return StopReason::kNotRun;
 }
 
+/// For runs that ended before their set-up was done.
+void RunControl::BookStart() {
+  double energy = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd gradient;
+  const bool finite =
+      reporter_.EnergyAndGradient(reporter_.start(), &energy, &gradient) == Status::kOk;
+  result_->start_energy = energy * problem_.units().energy;
+  result_->start_gradient_norm = finite ? gradient.norm() * problem_.units().gradient
+                                        : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// The step that is best along -g lowers E by |g|^2 / (2 q), q = g'Hg / g'g.
 double RunControl::LineSearchFloor(const Eigen::VectorXd& x, double energy,
                                    const Eigen::VectorXd& gradient) {
@@ -211,6 +222,7 @@ void RunControl::Finish(const Eigen::VectorXd& x) {
   Eigen::VectorXd gradient;
   const bool finite =
       x.allFinite() && reporter_.EnergyAndGradient(x, &energy, &gradient) == Status::kOk;
+  if (iteration_ < 0) BookStart();
   result_->x = reporter_.Expand(x);
   result_->energy = energy * units.energy;
   result_->gradient_norm =

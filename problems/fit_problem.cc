@@ -102,15 +102,28 @@ bool CurveFit::ChooseKnots(std::string* error) {
   spec_.control_points = basis_->num_control_points();
   const double begin = basis_->domain_begin();
   const double end = basis_->domain_end();
+  if (spec_.parameters.has_value() && !spec_.given_knots.empty()) {
+    // A rule's parameters go from 0 to 1, whatever domain the given knots have.
+    for (double& t : parameters_) t = std::min(begin + t * (end - begin), end);
+  }
   sorted_ = IsNondecreasing(parameters_.data(), parameters_.size());
   const double last = parameters_[parameters_.size() - 1];
   if (sorted_ && parameters_[0] >= begin && (spec_.closed ? last < end : last <= end)) return true;
   for (Eigen::Index i = 0; i < parameters_.size(); ++i) {
     const double t = parameters_[i];
     if (t >= begin && (spec_.closed ? t < end : t <= end)) continue;
+    const std::string place =
+        "parameter " + NumberText(t) + " of data point " + std::to_string(i + 1);
     if (!spec_.closed) {
-      *error = "parameter " + NumberText(t) + " of data point " + std::to_string(i + 1) +
-               " is outside the domain; allowed: " + NumberText(begin) + " to " + NumberText(end);
+      *error = place + " is outside the domain; allowed: " + NumberText(begin) + " to " +
+               NumberText(end);
+      return false;
+    }
+    const bool period_is_known = spec_.domain.has_value() || !spec_.given_knots.empty();
+    if (!period_is_known && !(t >= domain_.first && t <= domain_.second)) {
+      *error = place +
+               " is outside [0, 1]; parameters of a closed curve wrap around only if the "
+               "domain, one period, is stated";
       return false;
     }
     parameters_[i] = basis_->Wrap(t);

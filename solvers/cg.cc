@@ -1,5 +1,7 @@
 #include "solvers/cg.h"
 
+#include <cmath>
+
 namespace batten {
 
 SolverInfo CgSolver::ClassInfo() {
@@ -43,8 +45,12 @@ std::optional<Outcome> CgSolver::DoStep(Eigen::VectorXd* x) {
   const Status status = objective()->curve_view()->NormalProduct(direction_, &product_);
   if (status != Status::kOk) return Ended(status);
   const double curvature = direction_.dot(product_);
-  if (!(curvature > 0.0)) {
+  if (!std::isfinite(curvature)) {
     return Outcome{StopReason::kNumericalFailure, "the normal equations show no curvature"};
+  }
+  // A direction that the data do not see: what is left of the residual is rounding.
+  if (curvature <= 0.0) {
+    return Outcome{StopReason::kStalled, "the direction is one that the data do not see"};
   }
   const double step = squared_norm_ / curvature;
   *x += step * direction_;

@@ -9,12 +9,15 @@
 namespace batten {
 namespace {
 
-void ReadRitzValues(const std::vector<double>& diagonal, const std::vector<double>& off_diagonal,
+/// False, with nothing read, if the small eigenproblem does not converge, as can happen where its
+/// entries differ by many powers of ten.
+bool ReadRitzValues(const std::vector<double>& diagonal, const std::vector<double>& off_diagonal,
                     Spectrum* spectrum) {
   const auto k = static_cast<Eigen::Index>(diagonal.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), k),
                                 Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), k - 1));
+  if (solver.info() != Eigen::Success) return false;
   const double beta = off_diagonal.back();
   const Eigen::VectorXd& values = solver.eigenvalues();
   // Rounding brings in what the start does not reach, and a Ritz value that falls to zero with it.
@@ -26,6 +29,7 @@ void ReadRitzValues(const std::vector<double>& diagonal, const std::vector<doubl
   spectrum->smallest_error = beta * std::abs(solver.eigenvectors()(k - 1, first));
   spectrum->largest = values[k - 1];
   spectrum->largest_error = beta * std::abs(solver.eigenvectors()(k - 1, k - 1));
+  return true;
 }
 
 }  // namespace
@@ -55,8 +59,8 @@ Status EstimateSpectrum(
     // An invariant subspace: the Ritz values are eigenvalues.
     const bool exhausted = beta <= std::numeric_limits<double>::epsilon() * std::abs(alpha);
     if (k == next_check || k == max_products || exhausted) {
-      ReadRitzValues(diagonal, off_diagonal, spectrum);
-      const bool close = spectrum->smallest_error <= relative_error * spectrum->smallest &&
+      const bool close = ReadRitzValues(diagonal, off_diagonal, spectrum) &&
+                         spectrum->smallest_error <= relative_error * spectrum->smallest &&
                          spectrum->largest_error <= relative_error * spectrum->largest;
       if (close || exhausted) break;
       // Each reading costs k^2: at growing distances.

@@ -9,7 +9,8 @@
 
 namespace batten {
 
-/// Ends of the spectrum of a symmetric operator, as the Lanczos recursion sees them.
+/// Ends of the spectrum of a symmetric operator, as the Lanczos recursion sees them; all zero where
+/// it could not be read.
 struct Spectrum {
   double smallest = 0.0;        // Ritz value; of the part of the space the start reaches, values
                                 // below 64 roundings of the largest left out

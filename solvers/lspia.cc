@@ -68,8 +68,13 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
     status = EstimateSpectrum(multiply, start, kRelativeError, kMaxProducts, &spectrum);
   }
   if (status != Status::kOk) return Ended(status);
-  // The error bound keeps the step below 2 / l1 for certain.
-  const double l1 = spectrum.largest + spectrum.largest_error;
+  // A Ritz value may still be below l1 by more than its error bound, which is the distance to some
+  // eigenvalue: the largest row sum of |N| is never below l1 (Gershgorin), and is taken where the
+  // recursion did not settle.
+  const bool settled =
+      spectrum.largest > 0.0 && spectrum.largest_error <= kRelativeError * spectrum.largest;
+  const double l1 =
+      settled ? std::min(largest, spectrum.largest + spectrum.largest_error) : largest;
   const double ln = std::max(0.0, spectrum.smallest);
   step_.setConstant(relaxation_ * 2.0 / (l1 + ln));
   context()->Note("eigenvalues of A'A", NumberText(ln) + " to " + NumberText(l1));

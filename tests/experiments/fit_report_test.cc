@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "problems/fit_problem.h"
+#include "tests/experiments/outlines.h"
 
 namespace batten {
 namespace {
@@ -43,15 +44,6 @@ std::unique_ptr<Problem> MakeProblem(DataSet data, FitSpec spec) {
   std::unique_ptr<Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
   EXPECT_NE(problem, nullptr) << error;
   return problem;
-}
-
-RunResult RunSolver(const Problem& problem, const std::string& solver, const RunSpec& spec) {
-  RunResult result;
-  std::string error;
-  NameSpec name;
-  EXPECT_TRUE(ParseNameSpec(solver, &name, &error)) << error;
-  EXPECT_TRUE(Run(problem, name, spec, &result, &error)) << error;
-  return result;
 }
 
 TEST(MeasureFit, FindsTheParabolaThatWasDrawn) {
@@ -243,6 +235,37 @@ TEST(IteratesJsonLines, HasOneLinePerKeptIterate) {
   EXPECT_EQ(count, run.iterations + 1);
   const Points end = problem->curve_fit()->ControlPoints(run.x);
   EXPECT_EQ(last["control_points"][7][1].get<double>(), end(7, 1));
+}
+
+/// Small numbers beside a size that is not theirs: E and g are as exact as that size allows.
+TEST(MeasureFit, VerifiesFitsWhosePointsThatCountAreFarFromTheCentreOrNearZero) {
+  DataSet outlier;
+  outlier.points.resize(41, 2);
+  outlier.weights = Eigen::VectorXd::Ones(41);
+  for (int i = 0; i < 40; ++i) outlier.points.row(i) << std::cos(i * 0.157), std::sin(i * 0.157);
+  outlier.points.row(40) << 1e5, 1e5;
+  DataSet impulse;
+  impulse.points = Points::Zero(30, 1);
+  impulse.points(7, 0) = 1.0;
+  impulse.weights = Eigen::VectorXd::Ones(30);
+  (*impulse.weights)[7] = 0.001;
+  for (const double weight : {0.0, 1e-12}) {
+    (*outlier.weights)[40] = weight;
+    for (const DataSet* data : {&outlier, &impulse}) {
+      FitSpec spec;
+      spec.closed = true;
+      spec.control_points = 7;
+      std::string error;
+      const auto problem = MakeFitProblem(*data, spec, &error);
+      ASSERT_NE(problem, nullptr) << error;
+      for (const char* solver : {"banded_qr", "banded_cholesky", "lbfgs", "cg"}) {
+        const RunSpec run_spec;
+        const RunResult run = RunSolver(*problem, solver, run_spec);
+        const FitReport report = MeasureFit(*problem, run, run_spec);
+        EXPECT_TRUE(report.audited && report.verdict.holds) << solver << report.verdict.failure;
+      }
+    }
+  }
 }
 
 }  // namespace

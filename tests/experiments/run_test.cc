@@ -192,5 +192,39 @@ TEST(Run, StatesTheOptionsItReallyUsed) {
   EXPECT_EQ(result.options.at("wolfe"), "weak");
 }
 
+TEST(Run, KnowsItsStartEvenWhereTheTimeWasUpBeforeTheSetUpWas) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  RunSpec spec;
+  spec.max_seconds = 1e-9;
+  for (const char* solver : {"cg", "lbfgs", "lspia/step=optimal"}) {
+    const RunResult result = RunSolver(*problem, solver, spec);
+    EXPECT_EQ(result.outcome.reason, StopReason::kTimeLimit) << solver;
+    EXPECT_EQ(result.start_energy, result.energy) << solver;
+    EXPECT_GT(result.start_gradient_norm, 1.0) << solver;
+  }
+}
+
+TEST(Run, NeedsLittleMoreThanOneEvaluationAnIterationWithoutCompilation) {
+  // The line search knows how large the rounding of E is, also where E ends near zero.
+  for (const char* name : {"rhino", "squirrel", "dolphin", "cat", "airfoil", "hike"}) {
+    const auto problem = LoadCatalogueProblem(name);
+    RunSpec spec;
+    spec.compile = false;
+    const RunResult result = RunSolver(*problem, "lbfgs", spec);
+    EXPECT_EQ(result.outcome.reason, StopReason::kGradientSmall) << name;
+    EXPECT_LE(result.counts.energy_calls, 1.2 * result.iterations + 5) << name;
+  }
+}
+
+TEST(Run, KnowsWhereALineSearchHasToEnd) {
+  const RunResult floor = RunSolver(*LoadCatalogueProblem("rhino"), "ceres_lbfgs", ToTheFloor());
+  ASSERT_EQ(floor.outcome.reason, StopReason::kLineSearchEnded);
+  EXPECT_LE(floor.gradient_norm, floor.line_search_floor);
+  // Scaled by 128, the largest eigenvalue of 2 N is at most 4, E 3e-4, S at most 10: the floor is
+  // at most sqrt(2 * 4 * 4 eps * (2 sqrt(3e-4) 10 + 3e-4)) 128.
+  EXPECT_LE(floor.line_search_floor, 7e-6);
+  EXPECT_EQ(RunSolver(*LoadCatalogueProblem("rhino"), "lbfgs").line_search_floor, 0.0);
+}
+
 }  // namespace
 }  // namespace batten

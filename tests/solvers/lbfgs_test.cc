@@ -91,7 +91,7 @@ TEST(Lbfgs, ReachesTheRoundingFloorOfAQuadratic) {
 TEST(Lbfgs, NeedsNoMoreIterationsForHugeWeights) {
   const auto plain = MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17));
   const auto heavy =
-      MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17, "interpolation/weight=1e40"));
+      MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17, "interpolation/weight=1e30"));
   const SolverTrial a(*plain, "lbfgs");
   const SolverTrial b(*heavy, "lbfgs");
   // Only the first step knows the unit of E.

@@ -128,5 +128,27 @@ TEST(Lspia, AControlPointWithoutDataStaysWhereItStarts) {
   }
 }
 
+TEST(Lspia, OptimalStepIsSafeWhereWeightsDifferByManyPowersOfTen) {
+  // The small eigenproblem of the Lanczos recursion may then not converge at all.
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    DataSet data = MakeNoisyLoop(60, 1, seed);
+    for (int i = 0; i < 60; ++i) {
+      (*data.weights)[i] = std::pow(10.0, 12.0 * std::sin(3.0 * i * i + seed));
+    }
+    FitSpec spec = MakeSpec(3, false, 17);
+    spec.ends = EndKnots::kFloating;
+    const auto problem = MakeFit(data, spec);
+    const SolverTrial trial(*problem, "lspia/step=optimal", {300});
+    const DenseFit dense(*problem);
+    // A step above 2 / l1 would make the gap grow from some iteration on.
+    EXPECT_LE(dense.Gap(trial.x), dense.Gap(problem->start()) * (1.0 + 1e-12)) << seed;
+    const double step = 2.0 / (dense.largest * dense.largest);
+    double l1 = 0.0;
+    const std::string range = trial.context.notes().at("eigenvalues of A'A");
+    ASSERT_TRUE(ParseNumber(range.substr(range.rfind(' ') + 1), &l1)) << range;
+    EXPECT_LT(1.0 / l1, step) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace batten
