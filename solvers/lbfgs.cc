@@ -66,7 +66,7 @@ SolverInfo LbfgsSolver::ClassInfo() {
       "Liu & Nocedal, Math. Programming 45, 1989; Liu et al., Accelerated Geometric "
       "Iteration Method, 2016; Hager & Zhang, SIAM J. Optim. 16, 2005";
   info.needs = {};
-  info.supports = {"any objective", "linear constraints", "losses", "weights"};
+  info.supports = {"any objective", "linear constraints", "losses", "weights", "any rank"};
   info.native_rule = NativeRule::kGradient;
   info.options = {
       OptionInfo::Integer("memory", 10, 3, 20, "pairs kept"),
