@@ -62,7 +62,8 @@ SolverInfo CeresLbfgsSolver::ClassInfo() {
   info.summary = "L-BFGS of Ceres, from our objective or from Ceres' own problem";
   info.source = "Ceres Solver 2.1, line_search_minimizer.cc; Nocedal, Math. Comp. 1980";
   info.needs = {"compiled rows (form=spans)"};
-  info.supports = {"any objective", "linear constraints", "losses", "weights", "any rank", "threads"};
+  info.supports = {"any objective", "linear constraints", "losses",
+                   "weights",       "any rank",           "threads"};
   info.native_rule = NativeRule::kGradient;
   info.options = {
       OptionInfo::Integer("memory", 20, 1, 1000, "pairs of steps and gradient changes kept"),

@@ -82,9 +82,8 @@ TEST(FitProblem, RefusesSizesWhoseSquaresAreNoNumbers) {
 TEST(FitProblem, RefusesTermsThatSayNothing) {
   EXPECT_THAT(WhyNot(MakeNoisyLoop(30, 2, 3), MakeSpec(3, false, 8, "interpolation/weight=0")),
               HasSubstr("the largest weight of a term is 0"));
-  EXPECT_THAT(
-      WhyNot(MakeNoisyLoop(30, 2, 3), MakeSpec(3, false, 8, "interpolation,interpolation")),
-      HasSubstr("term interpolation is given twice"));
+  EXPECT_THAT(WhyNot(MakeNoisyLoop(30, 2, 3), MakeSpec(3, false, 8, "interpolation,interpolation")),
+              HasSubstr("term interpolation is given twice"));
   EXPECT_THAT(WhyNot(MakeNoisyLoop(30, 2, 3), MakeSpec(3, false, 8, "interpolation/loss_scale=2")),
               HasSubstr("loss_scale is given without a loss"));
 }
