@@ -29,6 +29,8 @@ DEFINE_string(figure, "",
 namespace batten {
 namespace {
 
+constexpr char kAllowedFigure[] = "NAME.svg, with one character or more before the ending";
+
 /// How far a run is, by whichever limit or goal is nearest.
 double Fraction(const RunSpec& spec, const TraceRow& row, double start_gradient_norm) {
   double fraction = row.seconds / spec.max_seconds;
@@ -165,7 +167,7 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
     return Refuse(RefusedFlag("solver", FLAGS_solver, "one solver"), output);
   }
   if (WasGiven("figure") && WithExtension(FLAGS_figure, ".svg") != FLAGS_figure) {
-    return Refuse(RefusedFlag("figure", FLAGS_figure, "a file whose name ends in .svg"), output);
+    return Refuse(RefusedFlag("figure", FLAGS_figure, kAllowedFigure), output);
   }
   FitRequest request;
   if (!MakeFitRequest(positional, &request, error)) return kBadInput;
@@ -198,12 +200,14 @@ Command FitCommand() {
       "batten fit --problem=rhino --solver=lspia/step=optimal --trace=trace.csv "
       "--figure=rhino.svg"};
   command.flags = FitRequestFlags();
-  command.flags.push_back(TextFlag("solver", "SOLVER"));
+  command.flags.push_back(
+      TextFlag("solver", "SOLVER", "a solver of batten list solvers, with options or without"));
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
-  command.flags.push_back(TextFlag("out", "FILE", "The fit as JSON (docs/formats.md)."));
-  for (const char* name : {"trace", "iterates", "figure"}) {
-    command.flags.push_back(TextFlag(name, "FILE"));
+  command.flags.push_back(TextFlag("out", "FILE", "a file", "The fit as JSON (docs/formats.md)."));
+  for (const char* name : {"trace", "iterates"}) {
+    command.flags.push_back(TextFlag(name, "FILE", "a file"));
   }
+  command.flags.push_back(TextFlag("figure", "FILE", kAllowedFigure));
   command.flags.push_back(SwitchFlag("quiet"));
   command.run = &RunFit;
   return command;
