@@ -102,7 +102,8 @@ TEST(ConvergenceFigure, SaysThatThereIsNothingToDraw) {
   EXPECT_FALSE(result.written);
   EXPECT_EQ(result.message, "there is no trace to draw");
   const fs::path folder = Folder("no more");
-  for (const char* ending : {".svg", ".gp", ".dat"}) std::ofstream(folder / (std::string("wave") + ending)) << "old";
+  for (const char* ending : {".svg", ".gp", ".dat"})
+    std::ofstream(folder / (std::string("wave") + ending)) << "old";
   DrawConvergence({&row}, folder / "wave");
   EXPECT_TRUE(fs::is_empty(folder)) << "an older figure would show another run";
 }

@@ -17,7 +17,8 @@ namespace batten {
 
 /// An empty folder of its own.
 inline std::filesystem::path Folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("batten figures " + name);
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("batten figures " + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

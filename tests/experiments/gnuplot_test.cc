@@ -28,8 +28,7 @@ TEST(ShownText, LeavesOutTheMiddleOfWhatIsTooLong) {
 }
 
 TEST(DrawFigure, RunsNothingThatStandsInAName) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "batten gnuplot";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "batten gnuplot";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   FileBatch batch;

@@ -18,8 +18,7 @@ TEST(ExitStatus, IsSeventyWhereMemoryRunsOut) {
                               streams)
                           .Wait();
   EXPECT_EQ(ended.status, 70);
-  EXPECT_EQ(ended.err,
-            "batten: out of memory: this problem needs more than the system gives\n");
+  EXPECT_EQ(ended.err, "batten: out of memory: this problem needs more than the system gives\n");
   EXPECT_EQ(ended.out, "");
   EXPECT_THAT(folder.Names(), ::testing::IsEmpty());
 }

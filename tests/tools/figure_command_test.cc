@@ -12,7 +12,9 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 /// A gnuplot that says where it runs, and does not end.
-std::string Endless(const std::string& mark) { return "echo $$ > " + mark + "\nexec /bin/sleep 60\n"; }
+std::string Endless(const std::string& mark) {
+  return "echo $$ > " + mark + "\nexec /bin/sleep 60\n";
+}
 
 void WaitForFile(const std::string& path) {
   for (int i = 0; i < 3000 && ReadFile(path).empty(); ++i) usleep(20000);
@@ -35,7 +37,8 @@ class Figures : public ::testing::Test {
     return {"fit", "--problem=rhino", "--figure=" + svg_, "--out=" + (folder_ / "fit.json")};
   }
   std::vector<std::string> CompareArguments() const {
-    return {"compare", "--problems=rhino", "--solvers=banded_qr,cg", "--repetitions=1", "--out=" + out_};
+    return {"compare", "--problems=rhino", "--solvers=banded_qr,cg", "--repetitions=1",
+            "--out=" + out_};
   }
   Ended Compare(const std::string& flag = "--quiet") const {
     std::vector<std::string> arguments = CompareArguments();
@@ -68,7 +71,8 @@ TEST_F(Figures, HaveNoNamesThatWouldBeCommands) {
 TEST_F(Figures, AreXmlWhateverTheDataAreCalled) {
   const std::string data = folder_ / "a\xFF\x01<&.csv";
   std::filesystem::copy_file(DataFile("animals/rhino_100.csv"), data);
-  ASSERT_EQ(RunBatten({"fit", data, "--closed", "--control_points=40", "--figure=" + svg_}).status, 0);
+  ASSERT_EQ(RunBatten({"fit", data, "--closed", "--control_points=40", "--figure=" + svg_}).status,
+            0);
   const std::string picture = ReadFile(svg_);
   EXPECT_THAT(picture, HasSubstr("a\xEF\xBF\xBD\xEF\xBF\xBD&lt;&amp;: 100 points"));
   EXPECT_NO_THROW(nlohmann::json(picture).dump()) << "not UTF-8";

@@ -72,8 +72,14 @@ INSTANTIATE_TEST_SUITE_P(
         Edit{"NoCounts", [](json* row) { (*row)["iterations"] = nullptr; }},
         Edit{"TextForANumber", [](json* row) { (*row)["energy"] = "4"; }},
         Edit{"MissingField", [](json* row) { row->erase("gap"); }},
-        Edit{"Options", [](json* row) { (*row)["options"] = {{"memory", "5"}}; }},
-        Edit{"Notes", [](json* row) { (*row)["notes"] = {{{"name", 3}, {"value", "x"}}}; }},
+        Edit{"Options",
+             [](json* row) {
+               (*row)["options"] = {{"memory", "5"}};
+             }},
+        Edit{"Notes",
+             [](json* row) {
+               (*row)["notes"] = {{{"name", 3}, {"value", "x"}}};
+             }},
         Edit{"Message", [](json* row) { (*row)["message"] = "two\nlines"; }},
         Edit{"Verdict", [](json* row) { (*row)["verified"] = false; }},
         Edit{"DisagreementThatIsNoSentence", [](json* row) { (*row)["disagreement"] = 3; }},
