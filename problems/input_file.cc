@@ -65,8 +65,7 @@ void LineReader::Fill() {
   const int error_number = errno;
   end_ += static_cast<size_t>(stream_->gcount());
   // std::cin reads through stdin and takes its errors for the end.
-  const bool has_failed =
-      stream_->bad() || (stream_ == &std::cin && std::ferror(stdin) != 0);
+  const bool has_failed = stream_->bad() || (stream_ == &std::cin && std::ferror(stdin) != 0);
   if (has_failed) error_number_ = error_number == 0 ? EIO : error_number;
   at_end_ = !stream_->good();
 }

@@ -16,7 +16,8 @@ using Json = nlohmann::json;
 class RowFields {
  public:
   explicit RowFields(const std::string& line)
-      : json_(Json::parse(line, nullptr, /*allow_exceptions=*/false)), is_good_(json_.is_object()) {}
+      : json_(Json::parse(line, nullptr, /*allow_exceptions=*/false)),
+        is_good_(json_.is_object()) {}
 
   bool is_good() const { return is_good_; }
   void Require(bool condition) { is_good_ = is_good_ && condition; }
@@ -32,8 +33,8 @@ class RowFields {
   std::string TextOf(const Json& value) {
     Require(value.is_string());
     const std::string text = is_good_ ? value.get<std::string>() : "";
-    Require(std::none_of(text.begin(), text.end(),
-                         [](unsigned char c) { return c < 32 || c == 127; }));
+    Require(
+        std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }));
     return text;
   }
   std::string Text(const std::string& key) { return TextOf(At(key)); }

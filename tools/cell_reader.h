@@ -9,9 +9,9 @@ namespace batten {
 
 /// A line of cells.jsonl, read back.
 struct Cell {
-  ComparisonRow row;           // without its trace and end
+  ComparisonRow row;            // without its trace and end
   double minimum_energy = 0.0;  // NaN: not known
-  std::string disagreement;    // empty: none
+  std::string disagreement;     // empty: none
 };
 
 /// False unless `line` is a row of `solver` on `problem` that a run of `spec` can have written:

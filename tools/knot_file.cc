@@ -66,8 +66,8 @@ bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::stri
   }
   KnotWords words(&file);
   const auto refuse = [&](const std::string& found, const std::string& allowed) {
-    *error = path + ":" + std::to_string(words.line()) + ": found " + found +
-             "; allowed: " + allowed;
+    *error =
+        path + ":" + std::to_string(words.line()) + ": found " + found + "; allowed: " + allowed;
     return false;
   };
   for (std::string word; words.Next(&word);) {
