@@ -67,6 +67,13 @@ class TemporaryFolder {
   std::string path_;
 };
 
+/// Sanitizers need terabytes of addresses.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kCanLimitMemory = false;
+#else
+inline constexpr bool kCanLimitMemory = true;
+#endif
+
 /// How a run of the program ended.
 struct Ended {
   int status = -1;
