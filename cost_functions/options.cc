@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <climits>
 #include <cmath>
@@ -43,6 +44,12 @@ int EditDistance(const std::string& a, const std::string& b) {
     }
   }
   return cost[a.size()][b.size()];
+}
+
+std::string LowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 bool ParseInto(const OptionInfo& info, const std::string& text, OptionValues* values) {
@@ -258,7 +265,7 @@ bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
 std::string NearestName(const std::string& name, const std::vector<std::string>& known) {
   std::pair<int, std::string> nearest(INT_MAX, "");
   for (const std::string& candidate : known) {
-    const int distance = EditDistance(name, candidate);
+    const int distance = EditDistance(LowerCase(name), LowerCase(candidate));
     if (distance < nearest.first) nearest = {distance, candidate};
   }
   return nearest.second;

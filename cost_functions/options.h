@@ -70,7 +70,8 @@ bool ParseNameSpecList(const std::string& text, std::vector<NameSpec>* specs, st
 bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
                     OptionValues* values, std::string* error);
 
-/// The entry of `known` with the smallest edit distance (the first of equals); empty for none.
+/// The entry of `known` with the smallest edit distance, whatever the case of letters (the first of
+/// equals); empty for none.
 std::string NearestName(const std::string& name, const std::vector<std::string>& known);
 /// `unknown solver "lbgfs"; did you mean lbfgs? known: cg, gim, lbfgs`
 std::string UnknownNameMessage(const std::string& kind, const std::string& name,

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -31,8 +32,8 @@ std::map<std::string, pid_t>& Pending() {
   return pending;
 }
 
+// The caller holds the lock. A file that has taken its place is there no longer under this name.
 void RemoveTemporary(const std::string& temporary) {
-  const std::lock_guard<std::mutex> lock(PendingMutex());
   const auto entry = Pending().find(temporary);
   if (entry == Pending().end()) return;
   if (entry->second == getpid()) unlink(temporary.c_str());
@@ -66,10 +67,25 @@ std::string WithoutLinks(const std::string& path) {
   return result;
 }
 
-// /dev/stdout may lead to a regular file, which the shell wants filled and not replaced.
-bool IsStandardStream(const std::string& path) {
-  return path == "/dev/stdout" || path == "/dev/stderr" || path.rfind("/dev/fd/", 0) == 0 ||
-         path.rfind("/proc/self/fd/", 0) == 0;
+// The descriptor that `path` names; -1: none. Opened anew, a regular file behind it would be
+// written from its beginning by whoever still uses the descriptor.
+int StandardStream(const std::string& path) {
+  if (path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  for (const std::string folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    int number = -1;
+    const char* const end = path.data() + path.size();
+    if (path.rfind(folder, 0) != 0) continue;
+    const auto read = std::from_chars(path.data() + folder.size(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number >= 0) return number;
+  }
+  return -1;
+}
+
+int OpenDirectly(const std::string& path) {
+  const int stream = StandardStream(path);
+  if (stream >= 0) return fcntl(stream, F_DUPFD_CLOEXEC, 0);
+  return open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
 }
 
 }  // namespace
@@ -143,8 +159,8 @@ bool AtomicFile::Open(const std::string& path, std::string* error) {
   if (!exists && errno != ENOENT) return Fail(errno, error);
   if (!exists && std::filesystem::path(path).filename().empty()) return Fail(ENOENT, error);
   int file = -1;
-  if (exists && (!S_ISREG(status.st_mode) || IsStandardStream(path))) {
-    file = open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (exists && IsWrittenDirectly(path)) {
+    file = OpenDirectly(path);
   } else {
     // Renaming would get past the write protection of the file itself.
     if (exists && access(path.c_str(), W_OK) != 0) return Fail(errno, error);
@@ -167,15 +183,26 @@ bool AtomicFile::Open(const std::string& path, std::string* error) {
 }
 
 bool AtomicFile::Commit(std::string* error) {
+  if (!Finish(error)) return false;
+  const std::lock_guard<std::mutex> lock(PendingMutex());
+  return TakePlace(error);
+}
+
+bool AtomicFile::Finish(std::string* error) {
   CHECK(buffer_ != nullptr) << "no open file to commit";
   const bool stream_was_good = !stream_.fail();
   buffer_->Synchronize();
   buffer_->Close();
   if (buffer_->error_number() != 0) return Fail(buffer_->error_number(), error);
-  if (!stream_was_good) return Fail(EIO, error);
-  if (!temporary_.empty() && rename(temporary_.c_str(), target_.c_str()) != 0) {
-    return Fail(errno, error);
-  }
+  return stream_was_good || Fail(EIO, error);
+}
+
+bool AtomicFile::TakePlace(std::string* error) {
+  const bool is_there = temporary_.empty() || rename(temporary_.c_str(), target_.c_str()) == 0;
+  const int error_number = errno;
+  RemoveTemporary(temporary_);
+  temporary_.clear();
+  if (!is_there) return Fail(error_number, error);
   GiveUp();
   return true;
 }
@@ -189,8 +216,48 @@ bool AtomicFile::Fail(int error_number, std::string* error) {
 void AtomicFile::GiveUp() {
   stream_.rdbuf(nullptr);
   buffer_.reset();
-  if (!temporary_.empty()) RemoveTemporary(temporary_);
+  if (temporary_.empty()) return;
+  const std::lock_guard<std::mutex> lock(PendingMutex());
+  RemoveTemporary(temporary_);
   temporary_.clear();
+}
+
+AtomicFile* FileBatch::Open(const std::string& path, std::string* error) {
+  AtomicFile* const file = &files_.emplace_back();
+  if (file->Open(path, error)) return file;
+  files_.pop_back();
+  return nullptr;
+}
+
+AtomicFile* FileBatch::Write(const std::string& path, const std::string& contents,
+                             std::string* error) {
+  AtomicFile* const file = Open(path, error);
+  if (file == nullptr) return nullptr;
+  file->stream().write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  if (file->stream().flush()) return file;
+  file->Finish(error);  // says why
+  files_.pop_back();
+  return nullptr;
+}
+
+bool FileBatch::Commit(std::string* error) {
+  for (AtomicFile& file : files_) {
+    if (!file.Finish(error)) return false;
+  }
+  const std::lock_guard<std::mutex> lock(PendingMutex());
+  for (AtomicFile& file : files_) {
+    if (!file.TakePlace(error)) return false;
+  }
+  for (const std::string& path : removals_) unlink(path.c_str());
+  files_.clear();
+  removals_.clear();
+  return true;
+}
+
+bool IsWrittenDirectly(const std::string& path) {
+  struct stat status;
+  if (stat(path.c_str(), &status) != 0 || S_ISDIR(status.st_mode)) return false;
+  return !S_ISREG(status.st_mode) || StandardStream(path) >= 0;
 }
 
 bool WriteFileAtomically(const std::string& path, const std::string& contents, std::string* error) {

@@ -1,9 +1,11 @@
 #ifndef BATTEN_EXPERIMENTS_ATOMIC_FILE_H_
 #define BATTEN_EXPERIMENTS_ATOMIC_FILE_H_
 
+#include <list>
 #include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace batten {
 
@@ -24,10 +26,15 @@ class AtomicFile {
   std::ostream& stream() { return stream_; }
   /// Needs an open file. On failure `path` is as it was before, and the file is no longer open.
   bool Commit(std::string* error);
+  /// Where its contents are before Commit(), for a program that is to read them: flush first.
+  const std::string& place() const { return temporary_.empty() ? path_ : temporary_; }
 
  private:
+  friend class FileBatch;
   class Buffer;
 
+  bool Finish(std::string* error);                  // on the disk, under the temporary name
+  bool TakePlace(std::string* error);               // the caller holds the lock on the temporaries
   bool Fail(int error_number, std::string* error);  // gives up; always false
   void GiveUp();
 
@@ -37,6 +44,26 @@ class AtomicFile {
   std::unique_ptr<Buffer> buffer_;
   std::ostream stream_{nullptr};
 };
+
+/// Files that appear together: what can fail is done for all before the first takes its place, and
+/// an interrupted program (RemovePendingTemporaryFiles) leaves either none of them or all.
+class FileBatch {
+ public:
+  /// The new file, which the batch owns; null with one sentence in `error`.
+  AtomicFile* Open(const std::string& path, std::string* error);
+  /// The same, filled with `contents`.
+  AtomicFile* Write(const std::string& path, const std::string& contents, std::string* error);
+  /// What stands at `path` is out of date: Commit() takes it away.
+  void Remove(const std::string& path) { removals_.push_back(path); }
+  bool Commit(std::string* error);
+
+ private:
+  std::list<AtomicFile> files_;
+  std::vector<std::string> removals_;
+};
+
+/// The file is no regular one, or one that a shell has opened for us: written directly.
+bool IsWrittenDirectly(const std::string& path);
 
 bool WriteFileAtomically(const std::string& path, const std::string& contents, std::string* error);
 

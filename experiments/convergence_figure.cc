@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "cost_functions/options.h"
+#include "experiments/figure_panels.h"
 #include "experiments/figures.h"
 
 namespace batten {
@@ -16,14 +17,27 @@ constexpr int kNumColours = 8;
 constexpr int kNumDashes = 5;
 constexpr int kNumMarks = 7;
 // Pixels.
+constexpr int kLeft = 80;     // the first panel begins
+constexpr int kMiddle = 465;  // and ends
+constexpr int kRight = 575;   // the second begins, and ends with all panels
 constexpr int kPanelsWidth = 960;
 constexpr int kLegendSample = 100;
 constexpr int kCharacter = 10;
 constexpr int kHeight = 460;
 constexpr int kLegendLine = 22;
+constexpr std::size_t kMostTitle = 36;  // characters of a problem's name
 
 bool HasTrace(const ComparisonRow& row) {
   return row.run.skipped.empty() && !row.run.trace.empty();
+}
+
+/// In the key: what reaches 0 leaves a logarithmic axis.
+std::string KeyText(const ComparisonRow& row) {
+  const auto& excess = row.excess_energies;
+  const auto zero = std::find(excess.begin(), excess.end(), 0.0);
+  if (zero == excess.end()) return row.solver;
+  const auto k = static_cast<std::size_t>(zero - excess.begin());
+  return row.solver + " (E = E* at " + std::to_string(row.run.trace[k].iteration) + ")";
 }
 
 bool KnowsExcess(const std::vector<const ComparisonRow*>& rows) {
@@ -57,8 +71,12 @@ class Decades {
     low_ = std::min(low_, std::log10(value));
     high_ = std::max(high_, std::log10(value));
   }
+  /// Where nothing is above 0, a sentence stands in the frame.
   std::string RangeCommand() const {
-    if (low_ > high_) return "set yrange [0.1:1]\n";
+    if (low_ > high_) {
+      return "set yrange [0.1:1]\n"
+             "set label 1 '0 at every iteration' at graph 0.5, graph 0.5 center\n";
+    }
     constexpr double kMost = 34.0;
     constexpr double kMargin = 0.3;
     const double low = std::max({low_ - kMargin, high_ - kMost, -300.0});
@@ -102,7 +120,11 @@ std::string Style(int index, int num_iterations) {
 /// Linear, or where some solver needs many more iterations than others log(1 + k), which has a 0.
 std::string IterationAxis(int most_iterations) {
   constexpr int kMostLinear = 60;
-  if (most_iterations <= kMostLinear) return "set xtics autofreq\n";
+  if (most_iterations <= kMostLinear) {
+    constexpr int kSpacing = 40;  // pixels
+    const double step = TickStep(most_iterations, kMiddle - kLeft, kSpacing);
+    return "set xtics " + NumberText(std::max(1.0, step)) + "\n";
+  }
   std::string ticks = "0, 1, 3";
   for (int tick = 10; tick <= most_iterations; tick *= 10) {
     ticks += ", " + std::to_string(tick);
@@ -124,15 +146,16 @@ class Canvas {
   }
   std::string Panel(int left, int right, const std::string& quantity, const std::string& range,
                     int column) const {
-    std::string text = Place(left, right, 0.16, 0.9) + "set title " +
-                       GnuplotString(rows_.front()->problem + ": " + quantity) + " noenhanced\n" +
-                       range + "plot ";
+    std::string text =
+        Place(left, right, 0.16, 0.9) + "set title " +
+        GnuplotString(ShownText(rows_.front()->problem, kMostTitle) + ": " + quantity) +
+        " noenhanced\n" + range + "plot ";
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       text += (k > 0 ? ", \\\n     " : "") + ("DATA index " + std::to_string(k)) +
               " using 1:" + std::to_string(column) + " with linespoints linestyle " +
               std::to_string(k + 1);
     }
-    return text + "\n";
+    return text + "\nunset label 1\n";
   }
   std::string Legend() const {
     std::string text = Place(0, width_, 0.0, 1.0) +
@@ -142,7 +165,7 @@ class Canvas {
                        ", screen 0.9 left top vertical maxcols 1 Left reverse noenhanced\nplot ";
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       text += (k > 0 ? ", \\\n     " : "") + std::string("NaN with linespoints linestyle ") +
-              std::to_string(k + 1) + " title " + GnuplotString(rows_[k]->solver);
+              std::to_string(k + 1) + " title " + GnuplotString(KeyText(*rows_[k]));
     }
     return text + "\n";
   }
@@ -157,9 +180,6 @@ class Canvas {
 std::string Commands(const std::vector<const ComparisonRow*>& rows, int width, int most_iterations,
                      bool excess) {
   const Canvas canvas(rows, width);
-  constexpr int kLeft = 80;
-  constexpr int kMiddle = 465;
-  constexpr int kRight = 575;
   return "set multiplot\nunset key\n"
          "set border 3 linewidth 0.8\nset tics nomirror out scale 0.6\n"
          "set grid ytics linewidth 0.5 linecolor rgb '#dddddd'\n"
@@ -176,15 +196,11 @@ std::string Commands(const std::vector<const ComparisonRow*>& rows, int width, i
 }  // namespace
 
 FigureResult ConvergenceFigure(const std::vector<const ComparisonRow*>& rows,
-                               const std::string& stem) {
+                               const std::string& stem, FileBatch* batch) {
   std::vector<const ComparisonRow*> drawn;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(drawn),
                [](const ComparisonRow* row) { return HasTrace(*row); });
-  FigureResult result;
-  if (drawn.empty()) {
-    result.message = "there is no trace to draw";
-    return result;
-  }
+  if (drawn.empty()) return NoFigure(stem, "there is no trace to draw", batch);
   std::string data;
   std::string styles;
   int most_iterations = 1;
@@ -193,13 +209,13 @@ FigureResult ConvergenceFigure(const std::vector<const ComparisonRow*>& rows,
     data += (k > 0 ? "\n\n" : "") + Block(*drawn[k]);
     styles += Style(static_cast<int>(k), drawn[k]->run.iterations);
     most_iterations = std::max(most_iterations, drawn[k]->run.iterations);
-    longest_name = std::max(longest_name, drawn[k]->solver.size());
+    longest_name = std::max(longest_name, KeyText(*drawn[k]).size());
   }
   const int width = kPanelsWidth + kLegendSample + kCharacter * static_cast<int>(longest_name);
   const int height = std::max(kHeight, kLegendLine * (static_cast<int>(drawn.size()) + 4));
   return DrawFigure(stem, data,
                     styles + Commands(drawn, width, most_iterations, KnowsExcess(drawn)), width,
-                    height);
+                    height, batch);
 }
 
 std::vector<const ComparisonRow*> RowsOfProblem(const ComparisonResult& result, int problem_index) {

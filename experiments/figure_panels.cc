@@ -20,16 +20,44 @@ constexpr int kNarrowest = 640;  // title and legend must fit
 
 std::string Fraction(int pixels, int all) { return NumberText(static_cast<double>(pixels) / all); }
 
+/// Characters of a tick's number, written plainly.
+double TickWidth(const FigureAxis& axis) {
+  const double size = std::max(std::abs(axis.low), std::abs(axis.high));
+  const double digits = std::max(1.0, std::floor(std::log10(size)) + 1.0);
+  const double decimals = std::max(0.0, 1.0 - std::floor(std::log10(axis.length())));
+  return digits + decimals + (decimals > 0.0 ? 1.0 : 0.0);
+}
+
+std::string AxisName(const FigureAxis& axis) {
+  const double offset = axis.offset();
+  if (offset == 0.0) return axis.name;
+  return axis.name + (offset > 0.0 ? " - " : " + ") + NumberText(std::abs(offset));
+}
+
 std::string AxisCommands(const std::string& letter, const FigureAxis& axis, int pixels,
                          int spacing) {
-  // Plain numbers: data far from the origin would read 2.00004e6 at every tick.
-  return "set format " + letter + " '%.10g'\nset " + letter + "range [" + NumberText(axis.low) +
-         ":" + NumberText(axis.high) + "]\n" + "set " + letter + "tics " +
-         NumberText(TickStep(axis.length(), pixels, spacing)) + "\n" + "set " + letter + "label " +
-         GnuplotString(axis.name) + (letter == "y" ? " offset 1,0\n" : "\n");
+  const double offset = axis.offset();
+  // Plain numbers: data somewhat off the origin would read 2.00004e6 at every tick.
+  return "set format " + letter + " '%.10g'\nset " + letter + "range [" +
+         NumberText(axis.low - offset) + ":" + NumberText(axis.high - offset) + "]\n" + "set " +
+         letter + "tics " + NumberText(TickStep(axis.length(), pixels, spacing)) + "\n" + "set " +
+         letter + "label " + GnuplotString(AxisName(axis)) +
+         (letter == "y" ? " offset 1,0\n" : "\n");
 }
 
 }  // namespace
+
+double FigureAxis::offset() const {
+  constexpr double kWidest = 8.0;
+  if (!(length() > 0.0) || TickWidth(*this) <= kWidest) return 0.0;
+  const double unit = std::pow(10.0, std::floor(std::log10(length())) + 1.0);
+  return std::round((low + 0.5 * length()) / unit) * unit;
+}
+
+std::string FigureAxis::Column() const {
+  const std::string number = std::to_string(column);
+  return offset() == 0.0 ? number : "($" + number + "-(" + NumberText(offset()) + "))";
+}
 
 FigureCanvas LayOutPanels(std::vector<FigurePanel> panels, bool equal_scale) {
   const bool alone = panels.size() == 1;

@@ -6,13 +6,18 @@
 
 namespace batten {
 
-/// One axis of a panel: a column of the data file and the range it shows.
+/// One axis of a panel: a column of the data file and the range of it that is shown.
 struct FigureAxis {
   std::string name;
   int column = 1;
   double low = 0.0;
   double high = 1.0;
   double length() const { return high - low; }
+  /// Subtracted from what is shown, and written in the axis' name: a round number near the data
+  /// where their own numbers would be too long for ticks; else 0.
+  double offset() const;
+  /// The column, less the offset, in gnuplot's words.
+  std::string Column() const;
 };
 
 struct FigurePanel {

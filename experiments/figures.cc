@@ -11,7 +11,7 @@
 namespace batten {
 namespace {
 
-constexpr int kMostPoints = 20000;  // drawn; an SVG of a million is no picture any more
+constexpr int kMostPoints = 4000;  // drawn; more are no more to be seen on some 700 x 600 pixels
 constexpr int kMostSamples = 40000;
 
 /// Columns (t, coordinates) in dimension 1, coordinates otherwise.
@@ -27,7 +27,7 @@ std::string ColumnNames(int dimension) {
 }
 
 std::string DataName(int step) {
-  return step == 1 ? "data" : "data (every " + std::to_string(step) + "th)";
+  return step == 1 ? "data" : "data (1 in " + std::to_string(step) + ")";
 }
 
 std::string DataBlock(const CurveFit& fit, int step) {
@@ -123,30 +123,45 @@ std::vector<FigurePanel> Panels(const CurveFit& fit, const Points& control_point
   }
 }
 
-/// Data so dense that they would hide the curve are drawn below it, as a rim.
+/// Data so dense that they would hide polygon and curve are drawn small and light below them.
 bool IsDense(int num_points) { return num_points > 400; }
 
 std::string Styles(int num_points, int num_control_points) {
-  const double data = IsDense(num_points) ? 0.35 : std::min(0.45, 4.0 / std::sqrt(num_points));
+  const bool dense = IsDense(num_points);
+  const double data = dense ? 0.25 : std::min(0.45, 4.0 / std::sqrt(num_points));
   const double control = std::clamp(3.0 / std::sqrt(num_control_points), 0.1, 0.35);
-  return "set style line 1 linecolor rgb '#0050d0' pointtype 7 pointsize " + ShortNumber(data, 2) +
-         "  # data\n" +
+  return std::string("set style line 1 linecolor rgb '") + (dense ? "#7fb2ff" : "#0050d0") +
+         "' pointtype 7 pointsize " + ShortNumber(data, 2) + "  # data\n" +
          "set style line 2 linecolor rgb '#000000' linewidth 0.6 pointtype 4 pointsize " +
          ShortNumber(control, 2) + "  # control polygon\n" +
-         "set style line 3 linecolor rgb '#d81010' linewidth " +
-         (IsDense(num_points) ? "1.2" : "1.6") +
-         "  # curve\n"
+         "set style line 3 linecolor rgb '#d81010' linewidth 1.6  # curve\n"
          "set border 3 linewidth 0.8\n"
          "set tics nomirror out scale 0.6\n";
 }
 
 std::string PlotCommand(const FigurePanel& panel, bool dense) {
-  const std::string columns = " using " + std::to_string(panel.horizontal.column) + ":" +
-                              std::to_string(panel.vertical.column);
-  const std::string data = "DATA index 0" + columns + " with points linestyle 1 notitle";
-  const std::string curve = "DATA index 2" + columns + " with lines linestyle 3 notitle";
-  return "plot DATA index 1" + columns + " with linespoints linestyle 2 notitle, \\\n     " +
-         (dense ? data : curve) + ", \\\n     " + (dense ? curve : data) + "\n";
+  const std::string columns = panel.horizontal.Column() + ":" + panel.vertical.Column();
+  const auto layer = [&columns](const std::string& index, const std::string& style) {
+    return "DATA index " + index + " using " + columns + " with " + style + " notitle";
+  };
+  const std::string data = layer("0", "points linestyle 1");
+  const std::string polygon = layer("1", "linespoints linestyle 2");
+  const std::string curve = layer("2", "lines linestyle 3");
+  const std::string next = ", \\\n     ";
+  return "plot " +
+         (dense ? data + next + polygon + next + curve : polygon + next + curve + next + data) +
+         "\n";
+}
+
+/// In the middle above the panels. A long name gives way first.
+std::string TitleCommand(const std::string& name, const std::string& rest, int width) {
+  constexpr int kCharacter = 8;  // pixels
+  constexpr std::size_t kShortestName = 12;
+  const auto most = static_cast<std::size_t>(width / kCharacter);
+  const std::size_t for_name = most - std::min(most, rest.size());
+  const std::string title = ShownText(name, std::max(for_name, kShortestName)) + rest;
+  return "set label 1 " + GnuplotString(ShownText(title, most)) +
+         " at screen 0.5, screen 1 center offset 0,-1.2 noenhanced\n";
 }
 
 /// A plot of nothing over the whole width: only there the entries stand in one line.
@@ -164,12 +179,11 @@ std::string Legend(int step) {
 
 }  // namespace
 
-FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::string& stem) {
+FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::string& stem,
+                       FileBatch* batch) {
   const CurveFit* fit = problem.curve_fit();
-  FigureResult result;
   if (fit == nullptr || run.x.size() != problem.num_variables() || !run.x.allFinite()) {
-    result.message = problem.name() + ": there is no curve to draw";
-    return result;
+    return NoFigure(stem, problem.name() + ": there is no curve to draw", batch);
   }
   const Points control_points = fit->ControlPoints(run.x);
   const int m = static_cast<int>(fit->data().points.rows());
@@ -179,16 +193,15 @@ FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::
                            PolygonBlock(fit->basis(), control_points) + "\n\n" +
                            CurveBlock(fit->Curve(run.x));
   const FigureCanvas canvas = LayOutPanels(Panels(*fit, control_points), fit->dimension() > 1);
-  const std::string title = problem.name() + ": " + std::to_string(m) + " points, " +
-                            std::to_string(n) + " control points, " + run.solver.ToString();
-  std::string commands = Styles(m, n) + "set label 1 " + GnuplotString(title) +
-                         " at screen 0.5, screen 1 center offset 0,-1.2 noenhanced\n" +
-                         "set multiplot\n";
+  const std::string counts = ": " + std::to_string(m) + " points, " + std::to_string(n) +
+                             " control points, " + run.solver.ToString();
+  std::string commands =
+      Styles(m, n) + TitleCommand(problem.name(), counts, canvas.width) + "set multiplot\n";
   for (const FigurePanel& panel : canvas.panels) {
     commands += PanelCommands(canvas, panel) + PlotCommand(panel, IsDense(m)) + "unset label 1\n";
   }
   return DrawFigure(stem, data, commands + Legend(step) + "unset multiplot\n", canvas.width,
-                    canvas.height);
+                    canvas.height, batch);
 }
 
 }  // namespace batten

@@ -1,6 +1,8 @@
 #include "experiments/gnuplot.h"
 
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,19 +10,20 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cost_functions/options.h"
-#include "experiments/atomic_file.h"
 
 namespace batten {
 namespace {
 
 constexpr int kNotFound = 127;
 
-std::string Folder(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  return slash == std::string::npos ? "." : path.substr(0, slash + 1);
+std::string AbsolutePath(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::absolute(path, ignored).string();
 }
 
 /// Begins with "./": a name of its own may begin with a character that means something to gnuplot,
@@ -30,15 +33,17 @@ std::string LocalName(const std::string& path) {
   return "./" + (slash == std::string::npos ? path : path.substr(slash + 1));
 }
 
-/// In the child: gnuplot in `folder`, without a shell that would read the name.
-[[noreturn]] void RunScript(const std::string& folder, const std::string& script, int output,
-                            int errors) {
+/// In the child: gnuplot without a shell that would read the names.
+[[noreturn]] void RunScript(const std::string& script, const std::string& settings, pid_t parent,
+                            int output, int errors) {
+  // It ends with us, however we end; keys that interrupt us are ours to answer, not its.
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = open("/dev/null", O_RDONLY);
-  const bool ready = nothing >= 0 && dup2(nothing, 0) == 0 && dup2(output, 1) == 1 &&
-                     dup2(errors, 2) == 2 && chdir(folder.c_str()) == 0;
-  // The picture comes back through the pipe, so that the file is written whole or not at all.
+  const bool ready = getppid() == parent && nothing >= 0 && dup2(nothing, 0) == 0 &&
+                     dup2(output, 1) == 1 && dup2(errors, 2) == 2;
   if (ready) {
-    execlp("gnuplot", "gnuplot", "-e", "to_standard_output = 1", script.c_str(),
+    execlp("gnuplot", "gnuplot", "-e", settings.c_str(), script.c_str(),
            static_cast<char*>(nullptr));
   }
   _exit(kNotFound);
@@ -67,8 +72,9 @@ std::string Complaint(const std::string& text) {
   return last;
 }
 
-/// What gnuplot draws, or a sentence in `error`.
-bool Draw(const std::string& folder, const std::string& script, std::string* picture,
+/// What gnuplot draws, or a sentence in `error`. Script and data are read where they are now; the
+/// picture comes back through a pipe, so that its file is written whole or not at all.
+bool Draw(const AtomicFile& script, const AtomicFile& data, std::string* picture,
           std::string* error) {
   int ends[2];
   std::FILE* errors = std::tmpfile();
@@ -77,8 +83,12 @@ bool Draw(const std::string& folder, const std::string& script, std::string* pic
     if (errors != nullptr) std::fclose(errors);
     return false;
   }
+  const std::string path = AbsolutePath(script.place());
+  const std::string settings =
+      "to_standard_output = 1; DATA = " + GnuplotString(AbsolutePath(data.place()));
+  const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) RunScript(folder, script, ends[1], fileno(errors));
+  if (child == 0) RunScript(path, settings, parent, ends[1], fileno(errors));
   close(ends[1]);
   int status = -1;
   if (child > 0) {
@@ -99,9 +109,8 @@ bool Draw(const std::string& folder, const std::string& script, std::string* pic
 
 std::string Header(const std::string& stem, int width, int height) {
   const std::string name = LocalName(stem);
-  return "# Draws the picture again: gnuplot " + name.substr(2) +
-         ".gp, in this folder.\n"
-         "DATA = " +
+  return "# gnuplot draws the picture again from this script, in its folder.\n"
+         "if (!exists('DATA')) DATA = " +
          GnuplotString(name + ".dat") +
          "\n"
          "set terminal svg size " +
@@ -114,22 +123,68 @@ std::string Header(const std::string& stem, int width, int height) {
          "set datafile missing '?'\n";
 }
 
+void ReplaceAll(const std::string& from, const std::string& to, std::string* text) {
+  for (std::size_t at = text->find(from); at != std::string::npos; at = text->find(from, at)) {
+    text->replace(at, from.size(), to);
+    at += to.size();
+  }
+}
+
+/// Where the character that follows the one at `at` begins.
+std::size_t NextCharacter(const std::string& text, std::size_t at) {
+  do ++at;
+  while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80);
+  return at;
+}
+
 }  // namespace
 
 FigureResult DrawFigure(const std::string& stem, const std::string& data,
-                        const std::string& commands, int width, int height) {
+                        const std::string& commands, int width, int height, FileBatch* batch) {
   FigureResult result;
-  const std::string script = Header(stem, width, height) + commands;
-  result.written = WriteFileAtomically(stem + ".dat", data, &result.message) &&
-                   WriteFileAtomically(stem + ".gp", script, &result.message);
-  if (!result.written) return result;
+  const AtomicFile* const data_file = batch->Write(stem + ".dat", data, &result.message);
+  if (data_file == nullptr) return result;
+  const AtomicFile* const script =
+      batch->Write(stem + ".gp", Header(stem, width, height) + commands, &result.message);
+  if (script == nullptr) return result;
+  result.written = true;
   std::string picture;
-  if (!Draw(Folder(stem), LocalName(stem) + ".gp", &picture, &result.message)) {
+  if (Draw(*script, *data_file, &picture, &result.message)) {
+    result.drawn = batch->Write(stem + ".svg", picture, &result.message) != nullptr;
+  } else {
+    batch->Remove(stem + ".svg");
+    ReplaceAll(AbsolutePath(script->place()), stem + ".gp", &result.message);
     result.message += "; " + stem + ".gp and its data are there to draw " + stem + ".svg with";
-    return result;
   }
-  result.drawn = WriteFileAtomically(stem + ".svg", picture, &result.message);
   return result;
+}
+
+FigureResult NoFigure(const std::string& stem, const std::string& why, FileBatch* batch) {
+  for (const char* ending : {".dat", ".gp", ".svg"}) batch->Remove(stem + ending);
+  FigureResult result;
+  result.message = why;
+  return result;
+}
+
+std::string ShownText(const std::string& text, std::size_t most) {
+  using Json = nlohmann::json;
+  // The library's writer replaces what is no UTF-8, but leaves what UTF-8 may hold and XML may not.
+  std::string shown = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+  const std::string replacement = "\xEF\xBF\xBD";
+  for (const char* none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"}) ReplaceAll(none, replacement, &shown);
+  std::vector<std::string> characters;
+  for (std::size_t at = 0, next = 0; at < shown.size(); at = next) {
+    next = NextCharacter(shown, at);
+    const bool is_control = static_cast<unsigned char>(shown[at]) < 32 || shown[at] == 127;
+    characters.push_back(is_control ? replacement : shown.substr(at, next - at));
+  }
+  const std::size_t head = characters.size() <= most ? characters.size() : most / 2;
+  shown.clear();
+  for (std::size_t k = 0; k < characters.size(); ++k) {
+    if (k == head) shown += "\xE2\x80\xA6";  // an ellipsis
+    if (k < head || k + (most - most / 2 - 1) >= characters.size()) shown += characters[k];
+  }
+  return shown;
 }
 
 std::string GnuplotString(const std::string& text) {

@@ -17,23 +17,27 @@ bool IsPath(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> CatalogueNames() {
-  std::vector<std::string> names;
-  std::error_code error;
-  fs::directory_iterator file(CatalogueFolder(), error);
-  for (; !error && file != fs::directory_iterator(); file.increment(error)) {
-    if (file->path().extension() == ".json") names.push_back(file->path().stem());
+bool ListCatalogue(std::vector<std::string>* names, std::string* error) {
+  names->clear();
+  std::error_code code;
+  fs::directory_iterator file(CatalogueFolder(), code);
+  for (; !code && file != fs::directory_iterator(); file.increment(code)) {
+    if (file->path().extension() == ".json") names->push_back(file->path().stem());
   }
-  std::sort(names.begin(), names.end());
-  return names;
+  std::sort(names->begin(), names->end());
+  if (!code && !names->empty()) return true;
+  *error = CatalogueFolder() + ": found no problem files" +
+           (code ? " (" + code.message() + ")" : "") +
+           "; allowed: a folder of .json files, as BATTEN_CATALOGUE names it";
+  return false;
 }
 
 bool FindProblem(const std::string& name_or_path, CatalogueEntry* entry, std::string* error) {
   if (IsPath(name_or_path)) return ReadProblemFile(name_or_path, entry, error);
-  const std::vector<std::string> names = CatalogueNames();
+  std::vector<std::string> names;
+  if (!ListCatalogue(&names, error)) return false;
   if (!std::binary_search(names.begin(), names.end(), name_or_path)) {
     *error = UnknownNameMessage("problem", name_or_path, names);
-    if (names.empty()) *error += ": there are no problem files in " + CatalogueFolder();
     return false;
   }
   const std::string path = fs::path(CatalogueFolder()) / (name_or_path + ".json");

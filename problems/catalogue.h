@@ -27,8 +27,9 @@ struct CatalogueEntry {
 bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string* error);
 
 /// Names of the catalogue's problems: the folder problems/catalogue of the source tree or of the
-/// installation, or BATTEN_CATALOGUE. Sorted.
-std::vector<std::string> CatalogueNames();
+/// installation, or BATTEN_CATALOGUE. Sorted; at least one. False with one sentence in `error`,
+/// which names the folder.
+bool ListCatalogue(std::vector<std::string>* names, std::string* error);
 
 /// A problem by catalogue name or by path of a problem file (anything with a `/` or ending in
 /// .json).

@@ -1,25 +1,21 @@
 #include "problems/data_set.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "cost_functions/options.h"
+#include "problems/input_file.h"
 
 namespace batten {
 namespace {
 
 constexpr double kLargest = 1e150;  // its square, and the sum of many of them, is still a double
-constexpr size_t kChunkSize = size_t{1} << 20;
 
 // ASCII and one line whatever stands in the file: it may be a picture.
 std::string Quoted(std::string_view text) {
@@ -48,68 +44,6 @@ bool ParseField(std::string_view field, double* value) {
   if (result.ec == std::errc() && result.ptr == end) return std::abs(*value) <= kLargest;
   return ParseNumber(std::string(field), value) && std::abs(*value) <= kLargest;
 }
-
-/// Hands out the lines of a stream without their ends; holds one chunk and the longest line.
-class LineReader {
- public:
-  explicit LineReader(std::istream* stream) : stream_(stream), buffer_(2 * kChunkSize) {}
-
-  /// False at the end, after a read error and at a line longer than kChunkSize.
-  bool Next(std::string_view* line) {
-    const char* newline = nullptr;
-    while ((newline = FindNewline()) == nullptr && !at_end_) Fill();
-    const size_t end = newline == nullptr ? end_ : static_cast<size_t>(newline - buffer_.data());
-    is_too_long_ = end - begin_ > kChunkSize;
-    if (has_failed_ || begin_ == end_) return false;
-    ++number_;
-    if (is_too_long_) return false;
-    *line = std::string_view(buffer_.data() + begin_, end - begin_);
-    begin_ = std::min(end + 1, end_);
-    searched_ = begin_;
-    if (number_ == 1 && line->substr(0, 3) == "\xEF\xBB\xBF") line->remove_prefix(3);
-    if (!line->empty() && line->back() == '\r') line->remove_suffix(1);
-    return true;
-  }
-
-  int64_t number() const { return number_; }  ///< Of the line handed out last, from 1.
-  bool has_failed() const { return has_failed_; }
-  bool is_too_long() const { return is_too_long_; }
-
- private:
-  const char* FindNewline() {
-    const char* const data = buffer_.data();
-    const void* const found = std::memchr(data + searched_, '\n', end_ - searched_);
-    searched_ = end_;
-    return static_cast<const char*>(found);
-  }
-
-  void Fill() {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-    searched_ = end_;
-    // A line without an end in more than a chunk is given up: the file may be endless.
-    if (end_ > kChunkSize) {
-      at_end_ = true;
-      return;
-    }
-    errno = 0;
-    stream_->read(buffer_.data() + end_, static_cast<std::streamsize>(kChunkSize));
-    end_ += static_cast<size_t>(stream_->gcount());
-    has_failed_ = stream_->bad();
-    at_end_ = !stream_->good();
-  }
-
-  std::istream* const stream_;
-  std::vector<char> buffer_;
-  size_t begin_ = 0;     // of what has not been handed out
-  size_t searched_ = 0;  // no newline in [begin_, searched_)
-  size_t end_ = 0;
-  int64_t number_ = 0;
-  bool at_end_ = false;
-  bool has_failed_ = false;
-  bool is_too_long_ = false;
-};
 
 class DataSetReader {
  public:
@@ -229,11 +163,11 @@ class DataSetReader {
 
   bool Finish() {
     if (lines_.has_failed()) {
-      *error_ = label_ + ": cannot be read: " + std::strerror(errno == 0 ? EIO : errno);
+      *error_ = CannotBeRead(label_, lines_.error_number());
       return false;
     }
     if (lines_.is_too_long()) {
-      return Refuse(1, "a line of more than " + std::to_string(kChunkSize) + " bytes",
+      return Refuse(1, "a line of more than " + std::to_string(kLongestLine) + " bytes",
                     "shorter lines");
     }
     if (num_points_ == 0) return Refuse(1, "no data point up to the end", "at least one");
@@ -278,19 +212,8 @@ std::optional<DataSet> ReadDataSet(std::istream& stream, const std::string& labe
 
 std::optional<DataSet> ReadDataSet(const std::string& path, std::string* error) {
   if (path == "-") return ReadDataSet(std::cin, path, error);
-  std::error_code ignored;
   std::ifstream file;
-  errno = 0;
-  // A folder can be opened and fails only when read, with a message of the C++ library's own.
-  if (std::filesystem::is_directory(path, ignored)) {
-    errno = EISDIR;
-  } else {
-    file.open(path, std::ios::binary);
-  }
-  if (!file.is_open()) {
-    *error = path + ": cannot be read: " + std::strerror(errno);
-    return std::nullopt;
-  }
+  if (!OpenInput(path, &file, error)) return std::nullopt;
   return ReadDataSet(file, path, error);
 }
 

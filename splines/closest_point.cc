@@ -25,6 +25,9 @@ struct DistanceAt {
   double rounding = 0.0;  // differences of squared_distance below this mean nothing
 };
 
+/// About p roundings of the size of the coordinates.
+double RoundingOfDifference(int degree, double size) { return (degree + 4) * kEpsilon * size; }
+
 /// By the polynomial of `span`, also at its end, where the next one may leave at an angle.
 DistanceAt Measure(const BsplineCurve& curve, int span, const double* point, double t) {
   const BsplineBasis& basis = curve.basis();
@@ -50,8 +53,7 @@ DistanceAt Measure(const BsplineCurve& curve, int span, const double* point, dou
     at.curvature += values[1][c] * values[1][c] + difference * values[2][c];
     size = std::max({size, std::abs(values[0][c]), std::abs(point[c])});
   }
-  // About p roundings of the size of the coordinates in each difference.
-  const double off = (p + 4) * kEpsilon * size;
+  const double off = RoundingOfDifference(p, size);
   at.rounding = off * (2.0 * std::sqrt(d * at.squared_distance) + d * off);
   return at;
 }
@@ -137,8 +139,8 @@ void ClosestPoint::SampleSpans() {
   const BsplineBasis& basis = curve_.basis();
   const std::vector<double>& knots = basis.knots();
   const int per_span = PiecesPerSpan(basis);
-  const double rounding =
-      8.0 * basis.order() * kEpsilon * curve_.control_points().cwiseAbs().maxCoeff();
+  size_ = curve_.control_points().cwiseAbs().maxCoeff();
+  rounding_ = 8.0 * basis.order() * kEpsilon * size_;
   for (int k = basis.first_span(); k <= basis.last_span(); ++k) {
     if (!(knots[k] < knots[k + 1])) continue;
     const double step = (knots[k + 1] - knots[k]) / per_span;
@@ -146,7 +148,7 @@ void ClosestPoint::SampleSpans() {
       sample_parameters_.push_back(std::min(knots[k] + i * step, knots[k + 1]));
     }
     spans_.push_back(k);
-    deviations_.push_back(step * step / 8.0 * SecondDerivativeBound(curve_, k) + rounding);
+    deviations_.push_back(step * step / 8.0 * SecondDerivativeBound(curve_, k) + rounding_);
   }
   sample_parameters_.push_back(basis.domain_end());
   samples_ = curve_.Sample(Eigen::Map<const Eigen::VectorXd>(
@@ -207,6 +209,23 @@ ClosestPoint::Piece ClosestPoint::MakePiece(const double* point, int index) cons
   return {index, bound * bound, std::min(low + fraction * (high - low), high)};
 }
 
+/// False also where a distance is NaN: the start then is the answer.
+bool ClosestPoint::CanBeNearer(int level, int index, double squared_bound,
+                               double squared_distance) const {
+  if (!(squared_bound < squared_distance)) return false;
+  const int d = curve_.dimension();
+  // The curve passes through the point, as far as its coordinates are known.
+  const double off = RoundingOfDifference(curve_.basis().degree(), size_);
+  if (squared_distance <= d * off * off) return false;
+  const Box& box = levels_[level][index];
+  double squared_width = 0.0;
+  for (int c = 0; c < d; ++c) squared_width += std::pow(box.high[c] - box.low[c], 2);
+  // Widened by rounding_ on all sides, a box of equal points is 2 rounding_ wide.
+  constexpr double kFlat = 4.0;
+  if (squared_width > d * std::pow(kFlat * rounding_, 2)) return true;
+  return std::sqrt(squared_bound) + std::sqrt(squared_width) < std::sqrt(squared_distance);
+}
+
 FootPoint ClosestPoint::Find(const double* point, double start) const {
   struct Visit {
     int level;
@@ -222,10 +241,12 @@ FootPoint ClosestPoint::Find(const double* point, double start) const {
   std::array<Visit, 64> waiting;
   int num_waiting = 0;
   waiting[num_waiting++] = {static_cast<int>(levels_.size()) - 1, 0, 0.0};
+  int num_pieces = 0;
   while (num_waiting > 0) {
     const Visit visit = waiting[--num_waiting];
-    // Also where a distance is NaN: the start then is the answer.
-    if (!(visit.squared_bound < best.squared_distance)) continue;
+    if (!CanBeNearer(visit.level, visit.index, visit.squared_bound, best.squared_distance)) {
+      continue;
+    }
     if (visit.level == 0) {
       std::array<Piece, kPiecesPerRun> pieces;
       for (int i = 0; i < kPiecesPerRun; ++i) {
@@ -239,6 +260,7 @@ FootPoint ClosestPoint::Find(const double* point, double start) const {
                                         sample_parameters_[piece.index], piece.start,
                                         sample_parameters_[piece.index + 1]);
         if (IsBetter(basis, found, best)) best = found;
+        ++num_pieces;
       }
       continue;
     }
@@ -254,7 +276,7 @@ FootPoint ClosestPoint::Find(const double* point, double start) const {
     }
     waiting[num_waiting++] = near;
   }
-  return {basis.Wrap(best.t), best.squared_distance};
+  return {basis.Wrap(best.t), best.squared_distance, num_pieces};
 }
 
 }  // namespace batten

@@ -6,11 +6,10 @@
 
 DEFINE_string(problems, "rhino,squirrel,dolphin,cat",
               "Problems of the catalogue (batten list problems) or problem files, separated by "
-              "commas; all: the whole catalogue.");
-DEFINE_string(
-    solvers, "all",
-    "Solvers with their options, separated by commas, as in lbfgs/memory=5,cg; all: every "
-    "registered one, with its defaults.");
+              "commas; all among them: the whole catalogue.");
+DEFINE_string(solvers, "all",
+              "Solvers with their options, separated by commas, as in lbfgs/memory=5,cg; all among "
+              "them: every registered one, with its defaults.");
 DEFINE_int32(repetitions, batten::ComparisonSpec().repetitions,
              "Runs of each solver, interleaved; times are medians.");
 DEFINE_bool(strict, false, "Exit status 1 if some solver did not reach what was asked.");
@@ -23,9 +22,23 @@ DEFINE_bool(
 namespace batten {
 namespace {
 
+bool ProblemNames(std::vector<std::string>* names, std::string* error) {
+  for (const std::string& name : SplitAtCommas(FLAGS_problems)) {
+    if (name != "all") {
+      names->push_back(name);
+      continue;
+    }
+    std::vector<std::string> catalogue;
+    if (!ListCatalogue(&catalogue, error)) return false;
+    names->insert(names->end(), catalogue.begin(), catalogue.end());
+  }
+  return true;
+}
+
 bool FindContests(std::vector<Contest>* contests, std::string* error) {
-  const bool all = FLAGS_problems == "all";
-  for (const std::string& name : all ? CatalogueNames() : SplitAtCommas(FLAGS_problems)) {
+  std::vector<std::string> names;
+  if (!ProblemNames(&names, error)) return false;
+  for (const std::string& name : names) {
     Contest contest;
     contest.written = name;
     if (!FindProblem(name, &contest.entry, error)) {
@@ -92,15 +105,19 @@ Command CompareCommand() {
       "OUT/PROBLEM_fit: .svg with the gnuplot script (.gp) and the data (.dat) behind it. Rows are "
       "explained in docs/formats.md. Lengths are in the unit of the data, E in its square.",
       "Exit status 3: a claim failed its audit, or solvers that must agree do not. A solver that "
-      "fails is a row, and counts only with --strict."};
+      "fails is a row, and counts only with --strict. Without gnuplot the status is 2, unless "
+      "--nofigures is given; all but the pictures is written."};
   command.examples = {
       "batten compare --problems=rhino,squirrel,dolphin,cat --solvers=all --out=out/compare",
       "batten compare --problems=rhino --solvers=lbfgs/memory=5,cg --repetitions=1"};
-  command.flags = {TextFlag("problems", "LIST"), TextFlag("solvers", "LIST"),
-                   NumberFlag("repetitions", "N", 1.0, 1000.0)};
+  command.flags = {
+      TextFlag("problems", "LIST",
+               "names of batten list problems, problem files, all; separated by commas"),
+      TextFlag("solvers", "LIST", "solvers of batten list solvers, all; separated by commas"),
+      NumberFlag("repetitions", "N", 1.0, 1000.0)};
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
   command.flags.push_back(
-      TextFlag("out", "FOLDER",
+      TextFlag("out", "FOLDER", "a folder",
                "Folder for tables and figures, created if missing. Not given: only the "
                "table is printed."));
   for (const char* name : {"figures", "resume", "strict", "quiet"}) {

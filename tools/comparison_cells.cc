@@ -1,13 +1,15 @@
 #include "tools/comparison_cells.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "experiments/atomic_file.h"
 #include "experiments/comparison_tables.h"
+#include "problems/input_file.h"
+#include "tools/cell_reader.h"
 
 namespace batten {
 namespace {
@@ -31,83 +33,6 @@ std::uint64_t HashFile(const std::string& path, std::uint64_t hash) {
     hash = Hash(bytes.data(), static_cast<size_t>(file.gcount()), hash);
   }
   return hash;
-}
-
-double Number(const Json& json, const char* key) {
-  const Json& value = json.at(key);
-  return value.is_null() ? std::nan("") : value.get<double>();
-}
-
-template <typename Integer>
-Integer Whole(const Json& json, const char* key) {
-  const Json& value = json.at(key);
-  return value.is_null() ? Integer{0} : value.get<Integer>();
-}
-
-void ReadRun(const Json& json, RunResult* run) {
-  run->iterations = Whole<int>(json, "iterations");
-  run->counts.energy_calls = Whole<long>(json, "energy_calls");
-  run->counts.gradient_calls = Whole<long>(json, "gradient_calls");
-  run->counts.jacobian_calls = Whole<long>(json, "jacobian_calls");
-  run->counts.products = Whole<long>(json, "products");
-  run->counts.projections = Whole<long>(json, "projections");
-  run->counts.distinct_points = Whole<long>(json, "distinct_points");
-  run->cpu_seconds = Number(json, "cpu_seconds");
-  run->start_energy = Number(json, "start_energy");
-  run->start_gradient_norm = Number(json, "start_gradient_norm");
-  run->energy = Number(json, "energy");
-  run->gradient_norm = Number(json, "gradient_norm");
-  run->gradient_floor = Number(json, "gradient_floor");
-  run->observed_rate = Number(json, "observed_rate");
-  for (const auto& [name, value] : json.at("options").items()) {
-    run->options[name] = value.get<std::string>();
-  }
-  for (const Json& note : json.at("notes")) {
-    run->notes.emplace_back(note.at("name").get<std::string>(),
-                            note.at("value").get<std::string>());
-  }
-}
-
-void ReadReport(const Json& json, FitReport* report) {
-  report->rms = Number(json, "rms");
-  report->max = Number(json, "max");
-  report->rms_orthogonal = Number(json, "rms_orthogonal");
-  report->max_orthogonal = Number(json, "max_orthogonal");
-  report->audited = !json.at("verified").is_null();
-  report->verdict.holds = report->audited && json.at("verified").get<bool>();
-  report->verdict.failure = json.at("failure").get<std::string>();
-  report->audit.energy = Number(json, "audit_energy");
-  report->audit.gradient_norm = Number(json, "audit_gradient_norm");
-}
-
-/// The row that ComparisonJsonLines wrote, without its trace and end. Throws what nlohmann throws
-/// at a line that is no such row.
-ComparisonRow ReadRow(const Json& json) {
-  ComparisonRow row;
-  row.problem = json.at("problem").get<std::string>();
-  row.solver = json.at("solver").get<std::string>();
-  std::string ignored;
-  ParseNameSpec(row.solver, &row.run.solver, &ignored);
-  const auto stop = json.at("stop").get<std::string>();
-  const auto message = json.at("message").get<std::string>();
-  if (stop == "skipped") {
-    row.run.skipped = message;
-  } else {
-    FromString(stop, &row.run.outcome.reason);
-    row.run.outcome.message = message;
-  }
-  ReadRun(json, &row.run);
-  ReadReport(json, &row.report);
-  row.setup_seconds = row.run.setup_seconds = Number(json, "setup_seconds");
-  row.solve_seconds = Number(json, "solve_seconds");
-  row.seconds = row.run.seconds = Number(json, "seconds");
-  row.repetitions = Whole<int>(json, "repetitions");
-  row.times_cholesky = Number(json, "times_cholesky");
-  row.gap = Number(json, "gap");
-  row.distance_to_direct = Number(json, "distance_to_direct");
-  row.allowed_distance = Number(json, "allowed_distance");
-  row.unique_minimum = json.at("unique_minimum").is_null() || json.at("unique_minimum").get<bool>();
-  return row;
 }
 
 /// The sentence about this row; null if solvers agree.
@@ -141,11 +66,26 @@ std::string CellKey(const CatalogueEntry& entry, const NameSpec& solver,
 
 void ComparisonCells::Read() {
   std::ifstream file(path_);
-  for (std::string line; std::getline(file, line);) {
+  LineReader reader(&file);
+  for (std::string_view line; reader.Next(&line);) {
     const Json json = Json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (!json.is_object() || !json.contains("key") || !json["key"].is_string()) continue;
-    Put(json["key"].get<std::string>(), line);
+    const auto text_at = [&json](const char* key) {
+      const bool is_there = json.is_object() && json.contains(key) && json[key].is_string();
+      return is_there ? json[key].get<std::string>() : "";
+    };
+    if (text_at("key").empty()) continue;
+    Put({text_at("key"), text_at("problem"), std::string(line)});
   }
+}
+
+bool ComparisonCells::AreLast(const CatalogueEntry& entry, const ComparisonSpec& spec) const {
+  std::size_t missing = spec.solvers.size();
+  for (auto line = lines_.rbegin(); line != lines_.rend() && missing > 0; ++line) {
+    if (line->problem != entry.name) continue;
+    --missing;
+    if (line->key != CellKey(entry, spec.solvers[missing], spec)) return false;
+  }
+  return missing == 0;
 }
 
 bool ComparisonCells::Find(const CatalogueEntry& entry, const ComparisonSpec& spec,
@@ -154,16 +94,12 @@ bool ComparisonCells::Find(const CatalogueEntry& entry, const ComparisonSpec& sp
   std::vector<std::string> disagreements;
   double minimum_energy = std::nan("");
   for (const NameSpec& solver : spec.solvers) {
-    const auto line = line_of_key_.find(CellKey(entry, solver, spec));
-    if (line == line_of_key_.end()) return false;
-    try {
-      const Json json = Json::parse(line->second);
-      rows.push_back(ReadRow(json));
-      if (json.at("disagreement").is_string()) disagreements.push_back(json["disagreement"]);
-      if (!json.at("minimum_energy").is_null()) minimum_energy = json["minimum_energy"];
-    } catch (const Json::exception&) {
-      return false;  // somebody edited the file: the row is computed again
-    }
+    const Line* const line = FindLine(CellKey(entry, solver, spec));
+    Cell cell;
+    if (line == nullptr || !ReadCell(line->text, entry.name, solver, spec, &cell)) return false;
+    rows.push_back(std::move(cell.row));
+    if (!cell.disagreement.empty()) disagreements.push_back(cell.disagreement);
+    if (!std::isnan(cell.minimum_energy)) minimum_energy = cell.minimum_energy;
   }
   result->rows = std::move(rows);
   result->disagreements = std::move(disagreements);
@@ -172,7 +108,7 @@ bool ComparisonCells::Find(const CatalogueEntry& entry, const ComparisonSpec& sp
 }
 
 bool ComparisonCells::Append(const CatalogueEntry& entry, const ComparisonResult& result,
-                             std::string* error) {
+                             FileBatch* batch, std::string* error) {
   std::istringstream rows(ComparisonJsonLines(result));
   size_t index = 0;
   for (std::string row; std::getline(rows, row); ++index) {
@@ -181,19 +117,23 @@ bool ComparisonCells::Append(const CatalogueEntry& entry, const ComparisonResult
     json["key"] = key;
     json["disagreement"] =
         DisagreementOf(result.rows[index].problem, result.rows[index].solver, result.disagreements);
-    Put(key, json.dump());
+    Put({key, entry.name, json.dump()});
   }
   std::string text;
-  for (const std::string& key : keys_) text += line_of_key_.at(key) + "\n";
-  return WriteFileAtomically(path_, text, error);
+  for (const Line& line : lines_) text += line.text + "\n";
+  return batch->Write(path_, text, error) != nullptr;
 }
 
-void ComparisonCells::Put(const std::string& key, const std::string& line) {
-  if (line_of_key_.emplace(key, line).second) {
-    keys_.push_back(key);
-  } else {
-    line_of_key_[key] = line;
-  }
+const ComparisonCells::Line* ComparisonCells::FindLine(const std::string& key) const {
+  const auto found = std::find_if(lines_.begin(), lines_.end(),
+                                  [&key](const Line& line) { return line.key == key; });
+  return found == lines_.end() ? nullptr : &*found;
+}
+
+void ComparisonCells::Put(Line line) {
+  const auto has_key = [&line](const Line& other) { return other.key == line.key; };
+  lines_.erase(std::remove_if(lines_.begin(), lines_.end(), has_key), lines_.end());
+  lines_.push_back(std::move(line));
 }
 
 }  // namespace batten

@@ -1,10 +1,10 @@
 #ifndef BATTEN_TOOLS_COMPARISON_CELLS_H_
 #define BATTEN_TOOLS_COMPARISON_CELLS_H_
 
-#include <map>
 #include <string>
 #include <vector>
 
+#include "experiments/atomic_file.h"
 #include "experiments/comparison.h"
 #include "problems/catalogue.h"
 
@@ -21,21 +21,31 @@ class ComparisonCells {
  public:
   explicit ComparisonCells(std::string path) : path_(std::move(path)) {}
 
-  /// The lines that are there already; those that are no rows with a key are left out.
+  /// The lines that are there already, up to one that is too long to be a row; those that are no
+  /// rows with a key are left out.
   void Read();
+  /// The rows of all `solvers` on this problem are the last ones of it: its figures show them.
+  bool AreLast(const CatalogueEntry& entry, const ComparisonSpec& spec) const;
   /// Adds the rows of all `solvers` on this problem, in their order, and what was said about them
-  /// to `result`; false, adding nothing, unless they are all here.
+  /// to `result`; false, adding nothing, unless they are all here and such as this program writes.
   bool Find(const CatalogueEntry& entry, const ComparisonSpec& spec,
             ComparisonResult* result) const;
-  /// Puts the rows of `result`, which are those of `entry`, behind the others and writes the file.
-  bool Append(const CatalogueEntry& entry, const ComparisonResult& result, std::string* error);
+  /// Puts the rows of `result`, which are those of `entry`, behind the others and the file into
+  /// `batch`.
+  bool Append(const CatalogueEntry& entry, const ComparisonResult& result, FileBatch* batch,
+              std::string* error);
 
  private:
-  void Put(const std::string& key, const std::string& line);
+  struct Line {
+    std::string key;
+    std::string problem;
+    std::string text;
+  };
+  void Put(Line line);
+  const Line* FindLine(const std::string& key) const;
 
   std::string path_;
-  std::vector<std::string> keys_;  // in the order of the file
-  std::map<std::string, std::string> line_of_key_;
+  std::vector<Line> lines_;  // in the order of the file, each key once
 };
 
 }  // namespace batten

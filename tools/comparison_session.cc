@@ -57,6 +57,7 @@ std::vector<std::string> ComparisonSession::FigureFiles(const std::string& probl
 
 bool ComparisonSession::Prepare(std::string* error) const {
   if (files_.folder.empty()) return true;
+  if (!CheckName({"out", files_.folder}, error)) return false;
   if (!CreateDirectories(files_.folder, error)) {
     *error = "--out: " + *error;
     return false;
@@ -99,12 +100,24 @@ int ComparisonSession::Run(CommandOutput* output) {
 bool ComparisonSession::RunOrTakeOver(size_t index, Progress* progress, ComparisonResult* result,
                                       std::string* error) {
   const CatalogueEntry& entry = contests_[index].entry;
-  const bool has_figures = !files_.figures || HasFigures(entry.name);
+  const bool has_figures =
+      !files_.figures || (HasFigures(entry.name) && cells_.AreLast(entry, spec_));
   if (files_.resume && has_figures && cells_.Find(entry, spec_, result)) return true;
   if (!RunOne(index, progress, result, error)) return false;
-  if (files_.folder.empty() || result->interrupted) return true;
-  // The rows come last: a problem that has them has its figures.
-  return (!files_.figures || WriteFigures(*result, error)) && cells_.Append(entry, *result, error);
+  return files_.folder.empty() || result->interrupted || WriteProblem(index, *result, error);
+}
+
+bool ComparisonSession::WriteProblem(size_t index, const ComparisonResult& result,
+                                     std::string* error) {
+  const CatalogueEntry& entry = contests_[index].entry;
+  FileBatch batch;
+  if (files_.figures) {
+    if (!DrawFigures(result, &batch, error)) return false;
+  } else {
+    // Those of an earlier run would show other rows.
+    for (const std::string& file : FigureFiles(entry.name)) batch.Remove(file);
+  }
+  return cells_.Append(entry, result, &batch, error) && batch.Commit(error);
 }
 
 bool ComparisonSession::RunOne(size_t index, Progress* progress, ComparisonResult* result,
@@ -154,20 +167,22 @@ void ComparisonSession::Add(size_t index, ComparisonResult result) {
   }
 }
 
-bool ComparisonSession::WriteFigures(const ComparisonResult& result, std::string* error) {
+bool ComparisonSession::DrawFigures(const ComparisonResult& result, FileBatch* batch,
+                                    std::string* error) {
   const std::string& problem = result.rows.front().problem;
+  const std::string fit_stem = InFolder(problem + "_fit");
   const ComparisonRow* best = BestRow(result);
-  std::vector<FigureResult> figures = {
-      ConvergenceFigure(RowsOfProblem(result, 0), InFolder(problem + "_convergence"))};
-  if (best != nullptr) {
-    figures.push_back(FitFigure(*result.problems[0], best->run, InFolder(problem + "_fit")));
-  }
+  const FigureResult figures[] = {
+      ConvergenceFigure(RowsOfProblem(result, 0), InFolder(problem + "_convergence"), batch),
+      best == nullptr ? NoFigure(fit_stem, problem + ": no solver has an answer", batch)
+                      : FitFigure(*result.problems[0], best->run, fit_stem, batch)};
   for (const FigureResult& figure : figures) {
     if (IsWriteError(figure)) {
       *error = figure.message;
       return false;
     }
     if (!figure.drawn) notes_.push_back("no figure: " + figure.message);
+    if (figure.written && !figure.drawn && not_drawn_.empty()) not_drawn_ = figure.message;
   }
   return true;
 }
@@ -208,6 +223,7 @@ int ComparisonSession::Judge(CommandOutput* output) const {
     output->error = "audit: " + row.problem + ": " + row.solver + " " + row.report.verdict.failure;
     return kDisagreement;
   }
+  if (!not_drawn_.empty()) return Refuse("--figures: " + not_drawn_ + ", or --nofigures", output);
   for (const ComparisonRow& row : all_.rows) {
     if (!files_.strict || !row.run.skipped.empty()) continue;
     if (ReachedTarget(row.run, spec_.run, row.report)) continue;

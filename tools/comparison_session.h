@@ -48,7 +48,8 @@ class ComparisonSession {
   bool RunOne(size_t index, Progress* progress, ComparisonResult* result, std::string* error);
   bool HasFigures(const std::string& problem) const;
   void Add(size_t index, ComparisonResult result);
-  bool WriteFigures(const ComparisonResult& result, std::string* error);
+  bool WriteProblem(size_t index, const ComparisonResult& result, std::string* error);
+  bool DrawFigures(const ComparisonResult& result, FileBatch* batch, std::string* error);
   bool WriteTables(std::string* error) const;
   std::string FileList() const;
   int Judge(CommandOutput* output) const;
@@ -59,6 +60,7 @@ class ComparisonSession {
   ComparisonCells cells_;
   ComparisonResult all_;
   std::vector<std::string> notes_;
+  std::string not_drawn_;  // the first picture that gnuplot owes, and why
 };
 
 }  // namespace batten

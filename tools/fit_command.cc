@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <list>
 
 #include "experiments/atomic_file.h"
 #include "experiments/figures.h"
@@ -28,6 +27,8 @@ DEFINE_string(figure, "",
 
 namespace batten {
 namespace {
+
+constexpr char kAllowedFigure[] = "NAME.svg, with one character or more before the ending";
 
 /// How far a run is, by whichever limit or goal is nearest.
 double Fraction(const RunSpec& spec, const TraceRow& row, double start_gradient_norm) {
@@ -85,9 +86,9 @@ struct Written {
   std::string problem;  // not empty: something is missing all the same
 };
 
-bool DrawFitFigure(const Problem& problem, const RunResult& run, Written* written,
+bool DrawFitFigure(const Problem& problem, const RunResult& run, FileBatch* batch, Written* written,
                    std::string* error) {
-  const FigureResult figure = FitFigure(problem, run, WithExtension(FLAGS_figure, ""));
+  const FigureResult figure = FitFigure(problem, run, WithExtension(FLAGS_figure, ""), batch);
   if (IsWriteError(figure)) {
     *error = figure.message;
     return false;
@@ -97,38 +98,32 @@ bool DrawFitFigure(const Problem& problem, const RunResult& run, Written* writte
   return true;
 }
 
-/// All files are filled before the first takes its place: a full disk leaves none of them.
+/// All files or none: a full disk and an interrupt leave what was there before.
 bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spec,
                 const FitReport& report, Written* written, std::string* error) {
-  std::list<AtomicFile> files;
-  const auto open = [&](const std::string& path) -> std::ostream* {
-    files.emplace_back();
+  FileBatch batch;
+  const auto write = [&](const std::string& flag, const std::string& path, const auto& fill) {
+    if (!WasGiven(flag)) return true;
+    AtomicFile* const file = batch.Open(path, error);
+    if (file == nullptr) return false;
     written->files.push_back(path);
-    return files.back().Open(path, error) ? &files.back().stream() : nullptr;
+    fill(&file->stream());
+    // Now, not at the end: /dev/stdout may be given twice. What failed, Commit() says.
+    return file->stream().flush() || file->Commit(error);
   };
-  if (WasGiven("out")) {
-    std::ostream* stream = open(FLAGS_out);
-    if (stream == nullptr) return false;
+  const auto fill_fit = [&](std::ostream* stream) {
     WriteFitJson(problem, run, spec, report, stream);
-  }
-  if (WasGiven("trace")) {
-    std::ostream* stream = open(FLAGS_trace);
-    if (stream == nullptr) return false;
+  };
+  const auto fill_trace = [&](std::ostream* stream) {
     *stream << TraceCsv(run.trace, TermNames(problem));
-  }
-  if (WasGiven("iterates")) {
-    std::ostream* stream = open(FLAGS_iterates);
-    if (stream == nullptr) return false;
+  };
+  const auto fill_iterates = [&](std::ostream* stream) {
     *stream << IteratesJsonLines(problem, run);
-  }
-  for (AtomicFile& file : files) {
-    if (!file.stream().flush()) return file.Commit(error);  // says why
-  }
-  if (WasGiven("figure") && !DrawFitFigure(problem, run, written, error)) return false;
-  for (AtomicFile& file : files) {
-    if (!file.Commit(error)) return false;
-  }
-  return true;
+  };
+  return write("out", FLAGS_out, fill_fit) && write("trace", FLAGS_trace, fill_trace) &&
+         write("iterates", FLAGS_iterates, fill_iterates) &&
+         (!WasGiven("figure") || DrawFitFigure(problem, run, &batch, written, error)) &&
+         batch.Commit(error);
 }
 
 int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec& spec,
@@ -165,7 +160,7 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
     return Refuse(RefusedFlag("solver", FLAGS_solver, "one solver"), output);
   }
   if (WasGiven("figure") && WithExtension(FLAGS_figure, ".svg") != FLAGS_figure) {
-    return Refuse(RefusedFlag("figure", FLAGS_figure, "a file whose name ends in .svg"), output);
+    return Refuse(RefusedFlag("figure", FLAGS_figure, kAllowedFigure), output);
   }
   FitRequest request;
   if (!MakeFitRequest(positional, &request, error)) return kBadInput;
@@ -192,18 +187,21 @@ Command FitCommand() {
       "Exit status 1: the solver failed or did not reach what was asked. line_search_ended and "
       "native_stop count as reached where the audit finds |g| at most 1.5e-8 |g(start)|, below "
       "which "
-      "E no longer falls visibly. Status 3: the claim failed its audit."};
+      "E no longer falls visibly. Status 3: the claim failed its audit. Without gnuplot --figure "
+      "gives status 2; all but the picture is written."};
   command.examples = {
       "batten fit data/animals/rhino_100.csv --closed --control_points=80 --out=fit.json",
       "batten fit --problem=rhino --solver=lspia/step=optimal --trace=trace.csv "
       "--figure=rhino.svg"};
   command.flags = FitRequestFlags();
-  command.flags.push_back(TextFlag("solver", "SOLVER"));
+  command.flags.push_back(
+      TextFlag("solver", "SOLVER", "a solver of batten list solvers, with options or without"));
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
-  command.flags.push_back(TextFlag("out", "FILE", "The fit as JSON (docs/formats.md)."));
-  for (const char* name : {"trace", "iterates", "figure"}) {
-    command.flags.push_back(TextFlag(name, "FILE"));
+  command.flags.push_back(TextFlag("out", "FILE", "a file", "The fit as JSON (docs/formats.md)."));
+  for (const char* name : {"trace", "iterates"}) {
+    command.flags.push_back(TextFlag(name, "FILE", "a file"));
   }
+  command.flags.push_back(TextFlag("figure", "FILE", kAllowedFigure));
   command.flags.push_back(SwitchFlag("quiet"));
   command.run = &RunFit;
   return command;

@@ -2,14 +2,8 @@
 
 #include <gflags/gflags.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-
 #include "problems/catalogue.h"
+#include "tools/knot_file.h"
 #include "tools/run_flags.h"
 
 namespace {
@@ -45,54 +39,38 @@ DEFINE_string(start, kDefaults.start,
 namespace batten {
 namespace {
 
-bool ReadNumbers(const std::string& text, std::vector<double>* numbers) {
-  numbers->clear();
-  for (const std::string& part : SplitAtCommas(text)) {
-    double number = 0.0;
-    if (!ParseNumber(part, &number)) return false;
-    numbers->push_back(number);
-  }
-  return true;
-}
+constexpr char kAllowedDomain[] = "two numbers A,B with A < B";
 
-bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::string* error) {
-  std::ifstream file(path);
-  if (!file.is_open()) {
-    *error = RefusedFlag("knots", path,
-                         "uniform, averaged, numbers separated by commas, a file (" +
-                             std::string(std::strerror(errno)) + ")");
+/// Knots are checked here, where it is known whether the flag or a file holds them.
+bool ApplyKnotNumbers(FitRequest* request, std::string* error) {
+  FitSpec* spec = &request->spec;
+  std::string source = "--knots";
+  if (!ParseNumbers(FLAGS_knots, &spec->given_knots)) {
+    source = FLAGS_knots;
+    request->input_files.push_back(source);
+    if (!ReadKnotFile(source, &spec->given_knots, error)) return false;
+  }
+  std::string why;
+  const auto basis = BsplineBasis::Make(spec->degree, spec->closed, spec->given_knots, &why);
+  if (!basis.has_value()) {
+    *error = source + ": " + why;
     return false;
   }
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    std::replace_if(
-        line.begin(), line.end(), [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
-    std::istringstream words(line);
-    for (std::string word; words >> word && word.front() != '#';) {
-      knots->emplace_back();
-      if (ParseNumber(word, &knots->back())) continue;
-      *error = path + ":" + std::to_string(number) + ": found \"" + word.substr(0, 40) +
-               "\"; allowed: numbers, separated by white space or commas";
-      return false;
-    }
+  const int n = basis->num_control_points();
+  if (WasGiven("control_points") && spec->control_points != n) {
+    *error = RefusedFlag("control_points", std::to_string(spec->control_points),
+                         std::to_string(n) + ", as the given knots make");
+    return false;
   }
-  if (!file.bad() && !knots->empty()) return true;
-  *error = path + ": found no knots; allowed: numbers, separated by white space or commas";
-  return false;
+  spec->control_points = n;
+  return true;
 }
 
 bool ApplyKnots(FitRequest* request, std::string* error) {
   FitSpec* spec = &request->spec;
   if (WasGiven("knots")) {
     spec->given_knots.clear();
-    if (!FromString(FLAGS_knots, &spec->knots)) {
-      if (!ReadNumbers(FLAGS_knots, &spec->given_knots)) {
-        spec->given_knots.clear();
-        request->input_files.push_back(FLAGS_knots);
-        if (!ReadKnotFile(FLAGS_knots, &spec->given_knots, error)) return false;
-      }
-      if (!WasGiven("control_points")) spec->control_points = 0;
-    }
+    if (!FromString(FLAGS_knots, &spec->knots) && !ApplyKnotNumbers(request, error)) return false;
   }
   if (!WasGiven("ends")) return true;
   if (spec->closed || !spec->given_knots.empty()) {
@@ -112,8 +90,8 @@ bool ApplyDomain(FitSpec* spec, std::string* error) {
     return true;
   }
   std::vector<double> ends;
-  if (!ReadNumbers(FLAGS_domain, &ends) || ends.size() != 2 || !(ends[0] < ends[1])) {
-    *error = RefusedFlag("domain", FLAGS_domain, "two numbers A,B with A < B");
+  if (!ParseNumbers(FLAGS_domain, &ends) || ends.size() != 2 || !(ends[0] < ends[1])) {
+    *error = RefusedFlag("domain", FLAGS_domain, kAllowedDomain);
     return false;
   }
   if (spec->parameters.has_value() || !spec->given_knots.empty()) {
@@ -149,6 +127,7 @@ bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
   if (!has_problem) {
     request->data_path = positional.front();
     request->label = request->data_path == "-" ? "stdin" : request->data_path;
+    request->source = request->label;
     request->input_files = {request->data_path};
     return true;
   }
@@ -157,7 +136,7 @@ bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
     *error = "--problem: " + *error;
     return false;
   }
-  *request = {entry.spec, entry.data_path, entry.name, {entry.data_path, entry.path}};
+  *request = {entry.spec, entry.data_path, entry.name, entry.path, {entry.data_path, entry.path}};
   return true;
 }
 
@@ -165,15 +144,15 @@ bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
 
 std::vector<FlagInfo> FitRequestFlags() {
   constexpr double kLowestDegree = 1.0;
-  return {TextFlag("problem", "NAME"),
+  return {TextFlag("problem", "NAME", "a name of batten list problems, a problem file"),
           SwitchFlag("closed"),
           NumberFlag("degree", "P", kLowestDegree, kMaxDegree),
           NumberFlag("control_points", "N", 1.0, kMaxControlPoints),
           WordFlag("parameters", {"uniform", "chord_length", "centripetal", "given"}),
-          TextFlag("knots", "KNOTS"),
+          TextFlag("knots", "KNOTS", kAllowedKnots),
           WordFlag("ends", {"end_interpolating", "floating"}),
-          TextFlag("domain", "A,B"),
-          TextFlag("terms", "TERMS"),
+          TextFlag("domain", "A,B", kAllowedDomain),
+          TextFlag("terms", "TERMS", "terms of batten list terms, separated by commas"),
           WordFlag("start", {"data", "centroid"})};
 }
 
@@ -211,7 +190,7 @@ std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::string* error) 
   std::optional<DataSet> data = ReadDataSet(request.data_path, error);
   if (!data.has_value()) return nullptr;
   std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), request.spec, error);
-  if (problem == nullptr) *error = request.label + ": " + *error;
+  if (problem == nullptr) *error = request.source + ": " + *error;
   return problem;
 }
 

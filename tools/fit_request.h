@@ -14,7 +14,8 @@ namespace batten {
 struct FitRequest {
   FitSpec spec;
   std::string data_path;                 // "-": standard input
-  std::string label;                     // what messages call it
+  std::string label;                     // what the summary calls it
+  std::string source;                    // the file of data or of the problem, for messages
   std::vector<std::string> input_files;  // all that are read: none of them may be an output
 };
 

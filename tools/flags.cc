@@ -106,7 +106,7 @@ bool SetText(const FlagInfo& flag, const std::string& value, std::string* error)
                               ? !value.empty()
                               : std::count(flag.words.begin(), flag.words.end(), value) > 0;
   if (!is_allowed) {
-    *error = RefusedFlag(flag.name, value, flag.words.empty() ? flag.placeholder : WordsText(flag));
+    *error = RefusedFlag(flag.name, value, flag.words.empty() ? flag.allowed : WordsText(flag));
     return false;
   }
   gflags::SetCommandLineOption(flag.name.c_str(), value.c_str());
@@ -146,25 +146,25 @@ std::string HelpText(const FlagInfo& flag) {
 
 }  // namespace
 
-FlagInfo SwitchFlag(const std::string& name) { return {name, "", {}, 0.0, 0.0, false, ""}; }
+FlagInfo SwitchFlag(const std::string& name) { return {name, "", {}, 0.0, 0.0, false, "", ""}; }
 
 FlagInfo TextFlag(const std::string& name, const std::string& placeholder,
-                  const std::string& help) {
-  return {name, placeholder, {}, 0.0, 0.0, false, help};
+                  const std::string& allowed, const std::string& help) {
+  return {name, placeholder, {}, 0.0, 0.0, false, help, allowed};
 }
 
 FlagInfo WordFlag(const std::string& name, const std::vector<std::string>& words) {
-  return {name, "", words, 0.0, 0.0, false, ""};
+  return {name, "", words, 0.0, 0.0, false, "", ""};
 }
 
 FlagInfo NumberFlag(const std::string& name, const std::string& placeholder, double lowest,
                     double highest) {
-  return {name, placeholder, {}, lowest, highest, false, ""};
+  return {name, placeholder, {}, lowest, highest, false, "", ""};
 }
 
 FlagInfo NumberAboveFlag(const std::string& name, const std::string& placeholder, double lowest,
                          double highest) {
-  return {name, placeholder, {}, lowest, highest, true, ""};
+  return {name, placeholder, {}, lowest, highest, true, "", ""};
 }
 
 bool ParseFlags(const std::string& command, const std::vector<FlagInfo>& flags,

@@ -18,11 +18,13 @@ struct FlagInfo {
   double highest = 0.0;
   bool above_lowest = false;  // `lowest` itself is not allowed
   std::string help;
+  std::string allowed;  // instead of an empty text
 };
 
 FlagInfo SwitchFlag(const std::string& name);
+/// Any text but an empty one, which is answered with `allowed`.
 FlagInfo TextFlag(const std::string& name, const std::string& placeholder,
-                  const std::string& help = "");
+                  const std::string& allowed, const std::string& help = "");
 FlagInfo WordFlag(const std::string& name, const std::vector<std::string>& words);
 FlagInfo NumberFlag(const std::string& name, const std::string& placeholder, double lowest,
                     double highest);

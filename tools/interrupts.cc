@@ -59,10 +59,12 @@ void Handle(int signal_number) {
 
 void HandleInterrupts() {
   signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
   if (pipe2(interrupt_pipe, O_CLOEXEC) != 0) return;  // then a signal ends the program as ever
   std::thread(&WaitForInterrupts).detach();
   Handle(SIGINT);
   Handle(SIGTERM);
+  Handle(SIGHUP);
 }
 
 InterruptibleRun::InterruptibleRun() { run_watches = true; }

@@ -169,7 +169,9 @@ int RunList(const std::vector<std::string>& positional, CommandOutput* output) {
   const auto shown = [&wanted](const char* kind) { return wanted.empty() || wanted == kind; };
   std::vector<CatalogueEntry> entries;
   if (shown("problems")) {
-    for (const std::string& name : CatalogueNames()) {
+    std::vector<std::string> names;
+    if (!ListCatalogue(&names, &output->error)) return kBadInput;
+    for (const std::string& name : names) {
       entries.emplace_back();
       if (!FindProblem(name, &entries.back(), &output->error)) return kBadInput;
     }

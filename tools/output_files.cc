@@ -2,12 +2,14 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "experiments/atomic_file.h"
+#include "tools/flags.h"
 
 namespace batten {
 namespace {
@@ -22,21 +24,22 @@ bool AreSameFile(const std::string& a, const std::string& b) {
   return whole_a == fs::weakly_canonical(fs::absolute(b, ignored), ignored);
 }
 
-// A device, a pipe: it may be named twice, and trying it out could be seen at the other end.
-bool IsSpecial(const std::string& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-}
-
 bool CanWrite(const std::string& path, std::string* error) {
-  if (!IsSpecial(path)) return AtomicFile().Open(path, error);
+  // Trying out a device or a pipe could be seen at its other end.
+  if (!IsWrittenDirectly(path)) return AtomicFile().Open(path, error);
   if (access(path.c_str(), W_OK) == 0) return true;
   *error = "cannot write " + path + ": " + std::strerror(errno);
   return false;
 }
 
 }  // namespace
+
+bool CheckName(const OutputFile& output, std::string* error) {
+  const auto is_control = [](unsigned char c) { return c < 32 || c == 127; };
+  if (std::none_of(output.path.begin(), output.path.end(), is_control)) return true;
+  *error = RefusedFlag(output.flag, output.path, "a name without control characters");
+  return false;
+}
 
 bool CheckOutputs(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs,
                   std::string* error) {
@@ -47,14 +50,16 @@ bool CheckOutputs(const std::vector<OutputFile>& outputs, const std::vector<std:
       *error = where + "found -; allowed: a file, such as /dev/stdout";
       return false;
     }
-    for (size_t j = 0; j < i && !IsSpecial(output.path); ++j) {
+    if (!CheckName(output, error)) return false;
+    const bool may_stand_twice = IsWrittenDirectly(output.path);
+    for (size_t j = 0; j < i && !may_stand_twice; ++j) {
       if (!AreSameFile(output.path, outputs[j].path)) continue;
       *error = where + "found " + output.path + ", which --" + outputs[j].flag +
                " writes; allowed: another file";
       return false;
     }
     for (const std::string& input : inputs) {
-      if (IsSpecial(output.path) || !AreSameFile(output.path, input)) continue;
+      if (may_stand_twice || !AreSameFile(output.path, input)) continue;
       *error = where + "found " + output.path + ", which is read; allowed: another file";
       return false;
     }

@@ -14,8 +14,13 @@ struct OutputFile {
   std::string path;
 };
 
-/// Before the work: each path can be written (tried where it is a regular file or none yet), no two
-/// are the same file, none is one of `inputs`. False with one sentence in `error`.
+/// Control characters in names have no place in scripts, lists and terminals. False with one
+/// sentence in `error`.
+bool CheckName(const OutputFile& output, std::string* error);
+
+/// Before the work: each name is good, each path can be written (tried where it is a regular file
+/// or none yet), no two are the same file, none is one of `inputs`. False with one sentence in
+/// `error`.
 bool CheckOutputs(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs,
                   std::string* error);
 

@@ -38,8 +38,8 @@ namespace batten {
 std::vector<FlagInfo> RunFlags() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kLargestInteger = std::numeric_limits<int>::max();
-  // Above this a double, through which every number is checked, skips integers.
-  constexpr double kLargestSeed = 9007199254740992.0;
+  // Every number is checked as a double: the next one, 2^53, is also what 2^53 + 1 is read as.
+  constexpr double kLargestSeed = 9007199254740991.0;
   constexpr double kLongest = 1e9;  // seconds
   return {WordFlag("mode", {"race", "native"}),
           NumberFlag("gradient_tolerance", "RATIO", 0.0, 1.0),
@@ -69,16 +69,18 @@ RunSpec RunSpecFromFlags() {
 bool SolversFromFlag(const std::string& flag, const std::string& text,
                      std::vector<NameSpec>* solvers, std::string* error) {
   const SolverRegistry& registry = SolverRegistry::Global();
+  std::vector<NameSpec> items;
+  bool is_good = ParseNameSpecList(text, &items, error);
   solvers->clear();
-  if (text == "all") {
+  for (const NameSpec& item : items) {
+    if (item.ToString() != "all") {
+      is_good = is_good && registry.Make(item, nullptr, error) != nullptr;
+      solvers->push_back(item);
+      continue;
+    }
     for (const std::string& name : registry.Names()) {
       if (!registry.Find(name)->wraps_solver) solvers->push_back({name, {}, nullptr});
     }
-    return true;
-  }
-  bool is_good = ParseNameSpecList(text, solvers, error);
-  for (const NameSpec& solver : *solvers) {
-    is_good = is_good && registry.Make(solver, nullptr, error) != nullptr;
   }
   if (!is_good) *error = "--" + flag + ": " + *error;
   return is_good;
@@ -95,6 +97,16 @@ std::vector<std::string> SplitAtCommas(const std::string& text) {
     begin = end + 1;
   }
   return parts;
+}
+
+bool ParseNumbers(const std::string& text, std::vector<double>* numbers) {
+  numbers->clear();
+  for (const std::string& part : SplitAtCommas(text)) {
+    double number = 0.0;
+    if (!ParseNumber(part, &number)) return false;
+    numbers->push_back(number);
+  }
+  return true;
 }
 
 }  // namespace batten

@@ -19,13 +19,15 @@ namespace batten {
 std::vector<FlagInfo> RunFlags();
 RunSpec RunSpecFromFlags();
 
-/// The solvers of a list in the grammar, or all registered ones that wrap no other for `all`; each
-/// with options that it has. False with one sentence in `error`.
+/// The solvers of a list in the grammar, each with options that it has; `all` in it stands for all
+/// registered ones that wrap no other. False with one sentence in `error`.
 bool SolversFromFlag(const std::string& flag, const std::string& text,
                      std::vector<NameSpec>* solvers, std::string* error);
 
 /// "a, b" to parts without the blanks around them; empty parts stay.
 std::vector<std::string> SplitAtCommas(const std::string& text);
+/// All of `text`: numbers separated by commas.
+bool ParseNumbers(const std::string& text, std::vector<double>* numbers);
 
 }  // namespace batten
 

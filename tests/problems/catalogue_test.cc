@@ -28,6 +28,13 @@ class CatalogueVariable {
   ~CatalogueVariable() { unsetenv("BATTEN_CATALOGUE"); }
 };
 
+std::vector<std::string> Names() {
+  std::vector<std::string> names;
+  std::string error;
+  EXPECT_TRUE(ListCatalogue(&names, &error)) << error;
+  return names;
+}
+
 CatalogueEntry Found(const std::string& name_or_path) {
   CatalogueEntry entry;
   std::string error;
@@ -57,7 +64,7 @@ double LeastEnergy(const Problem& problem) {
 }
 
 TEST(Catalogue, KnowsItsProblems) {
-  EXPECT_THAT(CatalogueNames(),
+  EXPECT_THAT(Names(),
               ElementsAre("airfoil", "cat", "cat_interpolation", "dolphin", "dolphin_interpolation",
                           "hike", "protein", "rhino", "rhino_dense", "rhino_interpolation",
                           "squirrel", "squirrel_interpolation"));
@@ -84,7 +91,7 @@ TEST_P(EveryProblem, HasItsLeastEnergyAsReference) {
   EXPECT_NEAR(std::sqrt(LeastEnergy(*problem)), std::sqrt(entry.reference_energy), tolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryProblem, ::testing::ValuesIn(CatalogueNames()));
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryProblem, ::testing::ValuesIn(Names()));
 
 TEST(Catalogue, ShiftingTheRhinocerosAgainstItsKnotsIsAnotherProblem) {
   const CatalogueEntry entry = Found("rhino");
@@ -116,7 +123,7 @@ TEST(Catalogue, IsTheFolderInTheEnvironment) {
   folder.Write("problems/catalogue/other.json", text);
   folder.Write("data/points.csv", "x,y\n0,1\n2,3\n4,7\n5,5\n9,1\n");
   const CatalogueVariable variable(folder.path() / "problems" / "catalogue");
-  EXPECT_THAT(CatalogueNames(), ElementsAre("mine", "other"));
+  EXPECT_THAT(Names(), ElementsAre("mine", "other"));
   // A catalogue that was moved with its data finds them.
   const CatalogueEntry entry = Found("mine");
   EXPECT_EQ(entry.data_path, folder.path() / "data" / "points.csv");
@@ -129,11 +136,13 @@ TEST(Catalogue, IsTheFolderInTheEnvironment) {
 
 TEST(Catalogue, SaysWhereItLookedWhenThereIsNone) {
   const CatalogueVariable variable("/no/such/folder");
-  EXPECT_THAT(CatalogueNames(), IsEmpty());
+  std::vector<std::string> names;
   CatalogueEntry entry;
   std::string error;
+  EXPECT_FALSE(ListCatalogue(&names, &error));
+  EXPECT_THAT(error, HasSubstr("/no/such/folder: found no problem files (No such file"));
   EXPECT_FALSE(FindProblem("rhino", &entry, &error));
-  EXPECT_THAT(error, HasSubstr("no problem files in /no/such/folder"));
+  EXPECT_THAT(error, HasSubstr("/no/such/folder: found no problem files"));
 }
 
 }  // namespace

@@ -233,6 +233,29 @@ TEST(ClosestPoint, SearchesLongCurvesByTheirBoxes) {
   }
 }
 
+// Everywhere at one distance from the point, to rounding: no box excludes another one.
+TEST(ClosestPoint, LooksIntoFewPiecesOfALongFlatCurve) {
+  const int n = 2000;
+  const BsplineBasis basis =
+      BasisOf(3, false, UniformKnots(3, n, EndKnots::kEndInterpolating, 0.0, 1.0));
+  std::mt19937 random(20240509);
+  std::uniform_real_distribution<double> noise(-kEpsilon, kEpsilon);
+  for (const double height : {0.0, 5.0}) {
+    Points points(n, 1);
+    for (int j = 0; j < n; ++j) points(j, 0) = height + std::max(1.0, height) * noise(random);
+    points(n / 2, 0) = 10.0;
+    const BsplineCurve flat(basis, points);
+    const ClosestPoint closest(flat);
+    for (const double distance : {0.0, kEpsilon, 1e-11, 1e-3, 1.0}) {
+      const double point[] = {height - distance};
+      const FootPoint foot = closest.Find(point, 0.3);
+      EXPECT_NEAR(std::sqrt(foot.squared_distance), distance, 64 * 10 * kEpsilon);
+      // Two runs of eight pieces; all together there are 48,000 pieces.
+      EXPECT_LE(foot.num_pieces, 16) << "height " << height << ", distance " << distance;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Splines, EveryClosestPoint, ::testing::ValuesIn(AllSplineKinds()), NameOf);
 
 }  // namespace

@@ -77,10 +77,40 @@ TEST_F(FitFiles, MayBeDevices) {
   EXPECT_EQ(Fit({"--out=/dev/null", "--trace=/dev/null"}).status, 0);
 }
 
+TEST_F(FitFiles, MayBeStandardOutputMoreThanOnceWhateverIsBehindIt) {
+  const Ended ended = Fit({"--out=/dev/stdout", "--trace=/dev/fd/1"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const size_t trace = ended.out.find("\niteration,");
+  const size_t summary = ended.out.find("\nfitted ");
+  ASSERT_LT(trace, summary) << ended.out;
+  EXPECT_EQ(nlohmann::json::parse(ended.out.substr(0, trace))["format"], "batten.fit/1");
+}
+
+TEST_F(FitFiles, HaveNamesWithoutControlCharacters) {
+  for (const std::string flag : {"out", "trace", "iterates"}) {
+    ExpectRefused(Fit({"--" + flag + "=" + (folder_ / "a\nb")}), {"--" + flag + ": ", "a\\x0ab"});
+  }
+  ExpectRefused(RunBatten({"compare", "--out=" + (folder_ / "a\tb")}), {"--out: ", "a\\x09b"});
+  EXPECT_THAT(folder_.Names(), ElementsAre("points.csv"));
+}
+
 TEST_F(FitFiles, AreNotLeftBehindByAFullDisk) {
   ExpectRefused(Fit({"--out=/dev/full"}), {"cannot write /dev/full", "No space left"});
   ExpectRefused(Fit({"--out=" + (folder_ / "fit.json"), "--trace=/dev/full"}), {"No space left"});
   EXPECT_THAT(folder_.Names(), ElementsAre("points.csv"));
+}
+
+TEST_F(FitFiles, AreNotLeftBehindWhereTheyMustNotGrow) {
+  const std::string old = folder_.Write("trace.csv", "old");
+  Program::Streams streams;
+  streams.file_size = 200;
+  const std::string out = folder_ / "fit.json";
+  ExpectRefused(
+      Program({"fit", points_, "--control_points=5", "--out=" + out, "--trace=" + old}, streams)
+          .Wait(),
+      {"cannot write " + out, "File too large"});
+  EXPECT_THAT(folder_.Names(), ElementsAre("points.csv", "trace.csv"));
+  EXPECT_EQ(ReadFile(old), "old");
 }
 
 TEST_F(FitFiles, StayAsTheyWereWhereTheNewOneFails) {
@@ -160,10 +190,8 @@ TEST_P(Interrupted, ReadingOfStandardInputEndsAtOnce) {
   EXPECT_EQ(ended.status, 130);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, Interrupted, ::testing::Values(SIGINT, SIGTERM),
-                         [](const auto& test) {
-                           return std::string(test.param == SIGINT ? "Interrupt" : "Terminate");
-                         });
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupted, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
+                         [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
 }  // namespace
 }  // namespace batten

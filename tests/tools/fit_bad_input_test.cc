@@ -1,5 +1,6 @@
 // The command `fit` on input that is bad, or poor and still answered.
 #include <gmock/gmock.h>
+#include <sys/socket.h>
 
 #include "tests/tools/program.h"
 
@@ -94,6 +95,66 @@ TEST(FitCommand, RefusesPathsThatCannotBeRead) {
   ExpectRefused(RunBatten({"fit", folder / "", "--control_points=4"}), {"directory"});
   ExpectRefused(RunBatten({"fit", file, "--knots=" + (folder / "none.txt")}),
                 {"--knots: ", "No such file"});
+}
+
+TEST(FitCommand, RefusesStandardInputThatCannotBeRead) {
+  const TemporaryFolder folder;
+  Program::Streams streams;
+  streams.input_file = open((folder / "").c_str(), O_RDONLY);
+  ExpectRefused(Program({"fit", "-", "--control_points=4"}, streams).Wait(),
+                {"-: cannot be read: Is a directory"});
+  close(streams.input_file);
+}
+
+TEST(FitCommand, DoesNotFitWhatAReadErrorHasCutOff) {
+  // A socket whose peer goes away without having read everything hands out what it holds, and then
+  // an error.
+  int ends[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  const std::string points = "x,y\n0,0\n1,1\n2,0\n3,1\n4,0\n";
+  ASSERT_EQ(write(ends[0], points.data(), points.size()), static_cast<ssize_t>(points.size()));
+  ASSERT_EQ(write(ends[1], "unread", 6), 6);
+  close(ends[0]);
+  Program::Streams streams;
+  streams.input_file = ends[1];
+  ExpectRefused(Program({"fit", "-", "--control_points=4"}, streams).Wait(),
+                {"-: cannot be read: Connection reset by peer"});
+  close(ends[1]);
+}
+
+TEST(FitCommand, NamesTheFileOfTheProblemThatCannotBeMade) {
+  const TemporaryFolder folder;
+  folder.Write("points.csv", "x,y\n0,0\n1,1\n2,0\n3,1\n");
+  const std::string problem = folder.Write("p.json", R"({"name": "p", "data": "points.csv",
+    "parameters": "given", "spline": {"control_points": 4}})");
+  ExpectRefused(RunBatten({"fit", "--problem=" + problem}), {problem + ": ", "column t"});
+}
+
+TEST(FitCommand, NamesTheSourceOfBadKnots) {
+  const TemporaryFolder folder;
+  const std::string data = folder.Write("points.csv", "x,y\n0,0\n1,1\n2,0\n3,1\n");
+  const auto fit = [&data](const std::string& knots) {
+    return RunBatten({"fit", data, "--degree=1", "--knots=" + knots});
+  };
+  ExpectRefused(fit("0,0,0.5,0.2,1,1"), {"--knots: knot 3 is 0.2", "below knot 2, 0.5"});
+  ExpectRefused(fit("0,0,0,0,1,1"), {"--knots: knot 0, 0, stands 4 times"});
+  const std::string file = folder.Write("knots.txt", "# six\n0 0, 0.5\n\n0.2 1 1\n");
+  ExpectRefused(fit(file), {file + ":4: found 0.2 after 0.5", "do not decrease"});
+  folder.Write("knots.txt", "0 0\n1 one\n");
+  ExpectRefused(fit(file), {file + ":2: found \"one\"", "allowed: numbers"});
+  folder.Write("knots.txt", "0 0 0 0 1 1");
+  ExpectRefused(fit(file), {file + ": knot 0, 0, stands 4 times"});
+  folder.Write("knots.txt", "# none\n");
+  ExpectRefused(fit(file), {file + ":2: found no knots"});
+  ExpectRefused(fit(folder / ""), {"--knots: ", "Is a directory"});
+}
+
+TEST(FitCommand, GivesUpAFileOfKnotsWithoutAnEnd) {
+  Program::Streams streams;
+  if (kCanLimitMemory) streams.memory = rlim_t{1} << 30;
+  ExpectRefused(
+      Program({"fit", DataFile("animals/rhino_100.csv"), "--knots=/dev/zero"}, streams).Wait(),
+      {"/dev/zero:1: found ", "allowed: numbers"});
 }
 
 TEST(FitCommand, WantsExactlyOneInput) {

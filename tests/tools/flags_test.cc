@@ -46,8 +46,26 @@ TEST(Flags, RefuseValuesOutsideTheRangesOfTheRun) {
   ExpectRefused(Fit({"-", "--native_step=-1e-3"}), {"--native_step: found -1e-3", "at least 0"});
   ExpectRefused(Fit({"-", "--mode=rase"}), {"--mode: found \"rase\"", "race, native"});
   ExpectRefused(Fit({"-", "--closed=maybe"}), {"--closed: found \"maybe\"", "true, false"});
-  ExpectRefused(Fit({"-", "--out="}), {"--out: found \"\"", "FILE"});
   ExpectRefused(RunBatten({"compare", "--repetitions=0"}), {"--repetitions: found 0", "1 to"});
+}
+
+TEST(Flags, RefuseSeedsThatADoubleWouldRound) {
+  ExpectRefused(Fit({"-", "--seed=9007199254740993"}),
+                {"--seed: found 9007199254740993", "0 to 9007199254740991"});
+  ExpectRefused(Fit({"-", "--seed=9007199254740992"}), {"--seed"});
+  EXPECT_EQ(Fit({"-", "--control_points=5", "--seed=9007199254740991"}).status, 0);
+}
+
+TEST(Flags, AnswerAnEmptyTextWithWhatIsAllowed) {
+  ExpectRefused(Fit({"-", "--knots="}), {"--knots: found \"\"", "uniform, averaged, numbers"});
+  ExpectRefused(Fit({"-", "--solver="}), {"--solver: found \"\"", "batten list solvers"});
+  ExpectRefused(Fit({"-", "--terms="}), {"--terms: found \"\"", "batten list terms"});
+  ExpectRefused(Fit({"-", "--domain="}), {"--domain: found \"\"", "A < B"});
+  ExpectRefused(Fit({"--problem="}), {"--problem: found \"\"", "batten list problems"});
+  ExpectRefused(Fit({"-", "--out="}), {"--out: found \"\"", "a file"});
+  ExpectRefused(RunBatten({"compare", "--problems="}), {"--problems: ", "batten list problems"});
+  ExpectRefused(RunBatten({"compare", "--solvers="}), {"--solvers: ", "batten list solvers"});
+  ExpectRefused(RunBatten({"compare", "--out="}), {"--out: found \"\"", "a folder"});
 }
 
 TEST(Flags, AnswerAnUnknownOneWithTheNearestOfTheCommand) {
@@ -94,13 +112,14 @@ TEST(Flags, RefuseCombinationsThatMeanNothing) {
                 {"--domain: found \"2,1\"", "A < B"});
   ExpectRefused(Fit({"-", "--knots=0,1,oops"}), {"--knots: found \"0,1,oops\""});
   ExpectRefused(Fit({"-", "--knots=0,0,0,0,1,1,1,1", "--control_points=7"}),
-                {"control_points is 7"});
+                {"--control_points: found 7", "4, as the given knots make"});
   ExpectRefused(RunBatten({"compare", "--resume"}), {"--resume", "--out"});
 }
 
 TEST(Names, OfSolversProblemsTermsAndCommandsAreAnsweredWithTheNearest) {
   ExpectRefused(Fit({"-", "--control_points=5", "--solver=lbgfs"}),
                 {"--solver: ", "unknown solver \"lbgfs\"", "did you mean lbfgs?"});
+  ExpectRefused(Fit({"-", "--control_points=5", "--solver=LBFGS"}), {"did you mean lbfgs?"});
   ExpectRefused(Fit({"-", "--control_points=5", "--solver=lbfgs/memry=5"}),
                 {"--solver: ", "memry", "did you mean memory"});
   ExpectRefused(Fit({"-", "--control_points=5", "--solver=lbfgs/memory=99"}), {"3 to 20"});
@@ -114,6 +133,31 @@ TEST(Names, OfSolversProblemsTermsAndCommandsAreAnsweredWithTheNearest) {
   ExpectRefused(RunBatten({"fitt"}), {"unknown command \"fitt\"", "did you mean fit?"});
   ExpectRefused(RunBatten({"--degree=3", "fit"}), {"before the command"});
   ExpectRefused(RunBatten({}), {"no command", "fit, compare, list, help"});
+}
+
+TEST(Lists, TakeAllAmongOtherNames) {
+  const Ended solvers = RunBatten({"compare", "--problems=rhino", "--repetitions=1",
+                                   "--max_iterations=1", "--solvers=lbfgs/memory=5,all"});
+  EXPECT_EQ(solvers.status, 0) << solvers.err;
+  for (const char* name : {"lbfgs/memory=5", "banded_qr", "lspia", "lbfgs "}) {
+    EXPECT_THAT(solvers.out, HasSubstr(name));
+  }
+  ExpectRefused(RunBatten({"compare", "--solvers=cg,all"}), {"--solvers: found \"cg twice\""});
+  ExpectRefused(RunBatten({"compare", "--problems=rhino,all"}), {"\"rhino twice\""});
+  ExpectRefused(Fit({"-", "--control_points=5", "--solver=all"}), {"one solver"});
+}
+
+TEST(Catalogue, ThatHoldsNothingIsNamed) {
+  const TemporaryFolder folder;
+  setenv("BATTEN_CATALOGUE", (folder / "none").c_str(), 1);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"compare", "--problems=all"}, {"list", "problems"}, {"list"}}) {
+    ExpectRefused(RunBatten(arguments), {folder / "none", "No such file", "BATTEN_CATALOGUE"});
+  }
+  setenv("BATTEN_CATALOGUE", (folder / "").c_str(), 1);
+  ExpectRefused(RunBatten({"list", "problems"}), {folder / "", "found no problem files"});
+  EXPECT_EQ(RunBatten({"list", "solvers"}).status, 0);
+  unsetenv("BATTEN_CATALOGUE");
 }
 
 TEST(Help, ShowsOnlyTheFlagsOfItsCommandWithUnitsAndDefaults) {

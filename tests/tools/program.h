@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -65,6 +67,13 @@ class TemporaryFolder {
   std::string path_;
 };
 
+/// Sanitizers need terabytes of addresses.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kCanLimitMemory = false;
+#else
+inline constexpr bool kCanLimitMemory = true;
+#endif
+
 /// How a run of the program ended.
 struct Ended {
   int status = -1;
@@ -83,6 +92,8 @@ class Program {
     std::string input;  // text on standard input
     int input_file = -1;
     int output_file = -1;
+    rlim_t file_size = RLIM_INFINITY;  // of the largest file it may write, in bytes
+    rlim_t memory = RLIM_INFINITY;     // of its addresses, in bytes
   };
 
   explicit Program(std::vector<std::string> arguments) : Program(std::move(arguments), Streams()) {}
@@ -97,9 +108,12 @@ class Program {
     // A background job of a shell ignores interrupts, which the program would inherit.
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
+    signal(SIGHUP, SIG_DFL);
     dup2(streams.input_file >= 0 ? streams.input_file : open(input.c_str(), O_RDONLY), 0);
     dup2(streams.output_file >= 0 ? streams.output_file : Create("output"), 1);
     dup2(Create("error"), 2);
+    Limit(RLIMIT_FSIZE, streams.file_size);
+    Limit(RLIMIT_AS, streams.memory);
     execv(BATTEN_BINARY, pointers.data());
     _exit(126);
   }
@@ -141,6 +155,11 @@ class Program {
   }
 
  private:
+  static void Limit(int resource, rlim_t most) {
+    if (most == RLIM_INFINITY) return;
+    const rlimit limit = {most, most};
+    setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+  }
   int Create(const std::string& name) const {
     return open((folder_ / name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   }
@@ -154,6 +173,23 @@ inline Ended RunBatten(std::vector<std::string> arguments, const std::string& in
   streams.input = input;
   return Program(std::move(arguments), streams).Wait();
 }
+
+/// While it lives, programs are looked for in a folder that holds nothing but, if given, a gnuplot
+/// of the test's own: a script of /bin/sh.
+class OtherGnuplot {
+ public:
+  explicit OtherGnuplot(const std::string& script = "") : path_(std::getenv("PATH")) {
+    if (!script.empty()) chmod(folder_.Write("gnuplot", "#!/bin/sh\n" + script).c_str(), 0755);
+    setenv("PATH", (folder_ / "").c_str(), 1);
+  }
+  ~OtherGnuplot() { setenv("PATH", path_.c_str(), 1); }
+  OtherGnuplot(const OtherGnuplot&) = delete;
+  OtherGnuplot& operator=(const OtherGnuplot&) = delete;
+
+ private:
+  TemporaryFolder folder_;
+  std::string path_;
+};
 
 /// One line on standard error that contains all of `parts`, nothing on standard output, status 2.
 inline void ExpectRefused(const Ended& ended, const std::vector<std::string>& parts) {

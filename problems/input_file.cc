@@ -1,0 +1,73 @@
+#include "problems/input_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <system_error>
+
+namespace batten {
+
+bool OpenInput(const std::string& path, std::ifstream* file, std::string* error) {
+  std::error_code ignored;
+  errno = 0;
+  // A folder can be opened and fails only when read, with a message of the C++ library's own.
+  if (std::filesystem::is_directory(path, ignored)) {
+    errno = EISDIR;
+  } else {
+    file->open(path, std::ios::binary);
+  }
+  if (!file->is_open()) *error = CannotBeRead(path, errno);
+  return file->is_open();
+}
+
+std::string CannotBeRead(const std::string& file, int error_number) {
+  return file + ": cannot be read: " + std::strerror(error_number == 0 ? EIO : error_number);
+}
+
+bool LineReader::Next(std::string_view* line) {
+  const char* newline = nullptr;
+  while ((newline = FindNewline()) == nullptr && !at_end_) Fill();
+  const size_t end = newline == nullptr ? end_ : static_cast<size_t>(newline - buffer_.data());
+  is_too_long_ = end - begin_ > kLongestLine;
+  if (has_failed() || begin_ == end_) return false;
+  ++number_;
+  if (is_too_long_) return false;
+  *line = std::string_view(buffer_.data() + begin_, end - begin_);
+  begin_ = std::min(end + 1, end_);
+  searched_ = begin_;
+  if (number_ == 1 && line->substr(0, 3) == "\xEF\xBB\xBF") line->remove_prefix(3);
+  if (!line->empty() && line->back() == '\r') line->remove_suffix(1);
+  return true;
+}
+
+const char* LineReader::FindNewline() {
+  const char* const data = buffer_.data();
+  const void* const found = std::memchr(data + searched_, '\n', end_ - searched_);
+  searched_ = end_;
+  return static_cast<const char*>(found);
+}
+
+void LineReader::Fill() {
+  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  end_ -= begin_;
+  begin_ = 0;
+  searched_ = end_;
+  // A line without an end in more than is allowed is given up: the file may be endless.
+  if (end_ > kLongestLine) {
+    at_end_ = true;
+    return;
+  }
+  errno = 0;
+  stream_->read(buffer_.data() + end_, static_cast<std::streamsize>(kLongestLine));
+  const int error_number = errno;
+  end_ += static_cast<size_t>(stream_->gcount());
+  // std::cin reads through stdin and takes its errors for the end.
+  const bool has_failed = stream_->bad() || (stream_ == &std::cin && std::ferror(stdin) != 0);
+  if (has_failed) error_number_ = error_number == 0 ? EIO : error_number;
+  at_end_ = !stream_->good();
+}
+
+}  // namespace batten
