@@ -46,6 +46,7 @@ void AddAccuracy(const ComparisonRow& row, double minimum_energy, Json* json) {
   (*json)["energy"] = run.energy;
   (*json)["gradient_norm"] = run.gradient_norm;
   (*json)["gradient_floor"] = run.gradient_floor;
+  (*json)["line_search_floor"] = run.line_search_floor;
   (*json)["minimum_energy"] = minimum_energy;
   (*json)["gap"] = row.gap;
   (*json)["distance_to_direct"] = row.distance_to_direct;

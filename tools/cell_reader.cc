@@ -98,6 +98,7 @@ void ReadRun(RowFields* fields, RunResult* run) {
   run->energy = fields->Number("energy");
   run->gradient_norm = fields->Number("gradient_norm");
   run->gradient_floor = fields->Number("gradient_floor");
+  run->line_search_floor = fields->Number("line_search_floor");
   run->observed_rate = fields->Number("observed_rate");
   OptionValues options;
   std::string ignored;
