@@ -100,6 +100,10 @@ bool CurveFit::ChooseKnots(std::string* error) {
     return false;
   }
   spec_.control_points = basis_->num_control_points();
+  return true;
+}
+
+bool CurveFit::PlaceParameters(std::string* error) {
   const double begin = basis_->domain_begin();
   const double end = basis_->domain_end();
   if (spec_.parameters.has_value() && !spec_.given_knots.empty()) {
@@ -232,7 +236,9 @@ Points CurveFit::StartPoints() const {
 
 std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
   std::unique_ptr<CurveFit> fit(new CurveFit(std::move(data), std::move(spec)));
-  if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error)) return nullptr;
+  if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error) || !fit->PlaceParameters(error)) {
+    return nullptr;
+  }
   if (fit->spec_.start != "data" && fit->spec_.start != "centroid") {
     *error = "start is " + fit->spec_.start + "; allowed: data, centroid";
     return nullptr;

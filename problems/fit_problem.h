@@ -68,6 +68,8 @@ class CurveFit {
   CurveFit(DataSet data, FitSpec spec) : spec_(std::move(spec)), data_(std::move(data)) {}
   bool ChooseParameters(std::string* error);
   bool ChooseKnots(std::string* error);
+  /// On the domain of the knots.
+  bool PlaceParameters(std::string* error);
   bool Scale(std::string* error);
   Points StartPoints() const;
 

@@ -92,39 +92,58 @@ class LeastNormFronts::Split {
   bool delays_ = false;
 };
 
+/// The parts of one elimination as one problem, interior unknowns first.
+struct LeastNormFronts::Merged {
+  Merged(const std::vector<const Front*>& parts, const std::vector<int>& kept, int dimension) {
+    const auto is_new = [](const std::vector<int>& known, int column) {
+      return std::find(known.begin(), known.end(), column) == known.end();
+    };
+    for (const Front* part : parts) {
+      for (const int column : part->columns) {
+        if (is_new(kept, column) && is_new(columns, column)) columns.push_back(column);
+      }
+    }
+    num_interior = static_cast<Eigen::Index>(columns.size());
+    for (const int column : kept) {
+      if (is_new(columns, column)) columns.push_back(column);
+    }
+    first = Gather(parts, &Front::first, columns, dimension);
+    second = Gather(parts, &Front::second, columns, dimension);
+  }
+  Eigen::Index num_boundary() const {
+    return static_cast<Eigen::Index>(columns.size()) - num_interior;
+  }
+  /// Puts interior unknowns into the order of the split; those it delays become boundary ones.
+  void Follow(const Split& split) {
+    const MatrixXd turned = second.leftCols(num_interior) * split.order();
+    second.leftCols(num_interior) = turned;
+    const std::vector<int> unordered = columns;
+    for (Eigen::Index k = 0; k < num_interior; ++k) {
+      columns[static_cast<std::size_t>(k)] =
+          unordered[static_cast<std::size_t>(split.order().indices()[k])];
+    }
+    if (split.delays()) num_interior = split.rank();
+  }
+
+  std::vector<int> columns;
+  Eigen::Index num_interior = 0;
+  MatrixXd first;
+  MatrixXd second;
+};
+
 // Notation: i interior and c boundary unknowns. first is, once split, [R11 R12] i + X c = q (rank
 // rows) and rows without i. With QR of the transposed triangle, [R11 R12] = [L 0] V', V = [V1 V2],
 // i = V1 L^-1 (q - X c) + V2 f with f free. second determines f.
 Front LeastNormFronts::Eliminate(const std::vector<const Front*>& parts,
                                  const std::vector<int>& kept) {
-  std::vector<int> columns;
-  const auto add = [&columns](int column) {
-    if (std::find(columns.begin(), columns.end(), column) == columns.end()) {
-      columns.push_back(column);
-    }
-  };
-  for (const Front* part : parts) {
-    for (const int column : part->columns) {
-      if (std::find(kept.begin(), kept.end(), column) == kept.end()) add(column);
-    }
-  }
-  auto num_interior = static_cast<Eigen::Index>(columns.size());
-  for (const int column : kept) add(column);
-  const auto num_columns = static_cast<Eigen::Index>(columns.size());
-  const Split split(Gather(parts, &Front::first, columns, dimension_), num_interior,
-                    num_columns - num_interior, threshold_);
-  MatrixXd second = Gather(parts, &Front::second, columns, dimension_);
-  const MatrixXd turned = second.leftCols(num_interior) * split.order();
-  second.leftCols(num_interior) = turned;
-  const std::vector<int> unordered = columns;
-  for (Eigen::Index k = 0; k < num_interior; ++k) {
-    columns[static_cast<std::size_t>(k)] =
-        unordered[static_cast<std::size_t>(split.order().indices()[k])];
-  }
-  const Eigen::Index rank = split.rank();
-  if (split.delays()) num_interior = rank;
-  const Eigen::Index num_boundary = num_columns - num_interior;
+  Merged merged(parts, kept, dimension_);
+  const Split split(merged.first, merged.num_interior, merged.num_boundary(), threshold_);
+  merged.Follow(split);
+  const Eigen::Index num_interior = merged.num_interior;
+  const Eigen::Index num_boundary = merged.num_boundary();
   const Eigen::Index num_known = num_boundary + dimension_;  // what i is expressed by
+  const Eigen::Index rank = split.rank();
+  rank_ += static_cast<int>(rank);
 
   MatrixXd v = MatrixXd::Identity(num_interior, num_interior);
   MatrixXd determined = split.rows().topRightCorner(rank, num_known);  // V1'i, by (c, 1)
@@ -133,39 +152,43 @@ Front LeastNormFronts::Eliminate(const std::vector<const Front*>& parts,
     const MatrixXd upper = split.rows().topLeftCorner(rank, num_interior);
     const Eigen::HouseholderQR<MatrixXd> transposed(upper.transpose());
     v = transposed.householderQ();
-    transposed.matrixQR().topRows(rank).triangularView<Eigen::Upper>().transpose().solveInPlace(
-        determined);
+    const auto l = transposed.matrixQR().topRows(rank).triangularView<Eigen::Upper>().transpose();
+    l.solveInPlace(determined);
   }
-  rank_ += static_cast<int>(rank);
   Record record;
   record.solution = v.leftCols(rank) * determined;
+  MatrixXd rest = SettleFree(merged.second, v.rightCols(num_interior - rank), &record.solution);
+  const auto boundary = merged.columns.begin() + num_interior;
+  record.interior.assign(merged.columns.begin(), boundary);
+  record.boundary.assign(boundary, merged.columns.end());
+  Front front;
+  front.columns = record.boundary;
+  const Eigen::Index num_left = split.rows().rows() - rank;
+  front.first = Compressed(split.rows().bottomRightCorner(num_left, num_known), num_boundary);
+  front.second = Compressed(rest, num_boundary);
+  records_.push_back(std::move(record));
+  return front;
+}
 
-  // second with i replaced: coefficients of f, of c, right-hand sides.
-  const Eigen::Index num_free = num_interior - rank;
-  MatrixXd rest(second.rows(), num_free + num_known);
-  const MatrixXd through = second.leftCols(num_interior) * record.solution;
-  rest << second.leftCols(num_interior) * v.rightCols(num_free),
+MatrixXd LeastNormFronts::SettleFree(const MatrixXd& second, const MatrixXd& v2,
+                                     MatrixXd* solution) const {
+  const Eigen::Index num_interior = v2.rows();
+  const Eigen::Index num_free = v2.cols();
+  const Eigen::Index num_boundary = solution->cols() - dimension_;
+  const MatrixXd through = second.leftCols(num_interior) * *solution;
+  MatrixXd rest(second.rows(), num_free + solution->cols());  // of f, of c, right-hand sides
+  rest << second.leftCols(num_interior) * v2,
       second.middleCols(num_interior, num_boundary) + through.leftCols(num_boundary),
       second.rightCols(dimension_) - through.rightCols(dimension_);
   if (num_free > 0) {
     const Eigen::HouseholderQR<MatrixXd> qr(rest.leftCols(num_free));
     rest.applyOnTheLeft(qr.householderQ().transpose());
-    MatrixXd free = rest.topRightCorner(num_free, num_known);
+    MatrixXd free = rest.topRightCorner(num_free, solution->cols());
     free.leftCols(num_boundary) *= -1.0;
     qr.matrixQR().topRows(num_free).triangularView<Eigen::Upper>().solveInPlace(free);
-    record.solution += v.rightCols(num_free) * free;
+    *solution += v2 * free;
   }
-
-  record.interior.assign(columns.begin(), columns.begin() + num_interior);
-  record.boundary.assign(columns.begin() + num_interior, columns.end());
-  Front front;
-  front.columns = record.boundary;
-  const Eigen::Index num_left = split.rows().rows() - rank;
-  front.first = Compressed(split.rows().bottomRightCorner(num_left, num_known), num_boundary);
-  front.second =
-      Compressed(rest.bottomRightCorner(rest.rows() - num_free, num_known), num_boundary);
-  records_.push_back(std::move(record));
-  return front;
+  return rest.bottomRightCorner(rest.rows() - num_free, solution->cols());
 }
 
 Points LeastNormFronts::Solve(int num_columns) const {

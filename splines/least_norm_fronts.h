@@ -37,11 +37,16 @@ class LeastNormFronts {
 
  private:
   class Split;
+  struct Merged;
   struct Record {  // interior unknowns = solution * (boundary unknowns, 1)
     std::vector<int> interior;
     std::vector<int> boundary;
     Eigen::MatrixXd solution;
   };
+  /// The choice that `second` (interior, boundary, right-hand sides) makes of the free part v2 f of
+  /// the interior is added to `solution`; what is left of second, in the boundary, is returned.
+  Eigen::MatrixXd SettleFree(const Eigen::MatrixXd& second, const Eigen::MatrixXd& v2,
+                             Eigen::MatrixXd* solution) const;
   double threshold_;
   int dimension_;
   int rank_ = 0;

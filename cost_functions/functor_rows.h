@@ -1,0 +1,156 @@
+#ifndef BATTEN_COST_FUNCTIONS_FUNCTOR_ROWS_H_
+#define BATTEN_COST_FUNCTIONS_FUNCTOR_ROWS_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "cost_functions/affine_form.h"
+#include "cost_functions/fit_setting.h"
+#include "cost_functions/pack.h"
+#include "cost_functions/site.h"
+#include "splines/basis_functions.h"
+
+namespace batten {
+
+/// The rows of an affine residual functor that are alike for all coordinates, read out of the
+/// functor, kRowPack sites at a time; P and D as in FunctorKernel.
+template <typename Functor, int P, int D>
+class FunctorRows {
+ public:
+  FunctorRows(const FitSetting& setting, const Sites& sites, const Functor& functor)
+      : setting_(setting), sites_(sites), basis_(*setting.basis), functor_(functor) {}
+
+  /// Hands out the rows root_factor * (A, Q), span by span.
+  void Stream(double root_factor, RowConsumer* consumer) const {
+    Form variables[kOrderStorage];
+    const Form* points[kOrderStorage];
+    for (int j = 0; j < order(); ++j) {
+      variables[j] = Form::Variable(j);
+      points[j] = &variables[j];
+    }
+    // Right-hand sides behind the coefficients: consumers have their fastest loops for that.
+    alignas(32) double rows[(kOrderStorage + kDimensionStorage) * kMaxRowsPerBlock];
+    for (const Sites::Group& group : sites_.groups) {
+      const SpanBasis<P, Pack> span_basis(basis_.degree(), basis_.knots().data(), group.span);
+      for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
+        RowBlock block;
+        block.first_column = basis_.ControlPointIndex(group.span - basis_.degree());
+        block.num_rows = std::min(kMaxRowsPerBlock, group.end - begin);
+        block.stride = (block.num_rows + kRowPack - 1) / kRowPack * kRowPack;
+        double* const right_hand_sides = rows + order() * block.stride;
+        block.coefficients = rows;
+        block.right_hand_sides = right_hand_sides;
+        FillRows(span_basis, group.span, points, begin, block, root_factor, rows, right_hand_sides);
+        consumer->Consume(block);
+      }
+    }
+  }
+
+ private:
+  static constexpr bool kStatic = P >= 0;
+  static constexpr int kOrderStorage = kStatic ? P + 1 : kMaxOrder;
+  static constexpr int kDimensionStorage = kStatic ? D : kMaxDimension;
+  using Form = AffineForm<Pack, kOrderStorage>;
+
+  int order() const { return kStatic ? P + 1 : basis_.order(); }
+  int dimension() const { return kStatic ? D : setting_.dimension; }
+
+  /// Products with weights and factors that are 1 are left out when compiling, not when running.
+  void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points,
+                int begin, const RowBlock& block, double root_factor, double* coefficients,
+                double* right_hand_sides) const {
+    if (sites_.weights == nullptr) {
+      FillRowsWith<false>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+    } else {
+      FillRowsWith<true>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+    }
+    if (root_factor == 1.0) return;
+    for (int k = 0; k < order() * block.stride; ++k) coefficients[k] *= root_factor;
+    for (int k = 0; k < dimension() * block.stride; ++k) right_hand_sides[k] *= root_factor;
+  }
+
+  /// Flattened: with the basis and the functor called for each pack, rows cost twice as much.
+  template <bool kWeighted>
+  __attribute__((flatten)) void FillRowsWith(const SpanBasis<P, Pack>& span_basis, int span,
+                                             const Form* const* points, int begin,
+                                             const RowBlock& block, double* coefficients,
+                                             double* right_hand_sides) const {
+    // Whole packs of neighbours in memory first; then the rest, a lane at a time.
+    const int in_a_row = sites_.order.empty() ? block.num_rows / kRowPack * kRowPack : 0;
+    for (int first = 0; first < in_a_row; first += kRowPack) {
+      FillPack<true, kWeighted>(span_basis, span, points, begin + first, 0, block.stride,
+                                coefficients + first, right_hand_sides + first);
+    }
+    for (int first = in_a_row; first < block.stride; first += kRowPack) {
+      FillPack<false, kWeighted>(span_basis, span, points, begin + first,
+                                 begin + block.num_rows - 1, block.stride, coefficients + first,
+                                 right_hand_sides + first);
+    }
+    for (int i = block.num_rows; i < block.stride; ++i) {
+      for (int j = 0; j < order(); ++j) coefficients[j * block.stride + i] = 0.0;
+      for (int c = 0; c < dimension(); ++c) right_hand_sides[c * block.stride + i] = 0.0;
+    }
+  }
+
+  /// Entries of the sites first..first+kRowPack-1; those past `last` repeat it.
+  template <bool kInARow>
+  Pack PackOf(const double* source, std::ptrdiff_t step, int first, int last) const {
+    if constexpr (kInARow) {
+      return Pack::Gather(source + first * step, step);
+    } else {
+      std::ptrdiff_t item[kRowPack];
+      for (int i = 0; i < kRowPack; ++i) item[i] = sites_.item(std::min(first + i, last));
+      return Pack::Gather(source, item, step);
+    }
+  }
+
+  /// The rows of kRowPack sites. Coordinate by coordinate the functor sees a curve with one
+  /// coordinate, whose control point j is the variable x_j.
+  template <bool kInARow, bool kWeighted>
+  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, Pack>& span_basis,
+                                                      int span, const Form* const* points,
+                                                      int first, int last, int stride,
+                                                      double* coefficients,
+                                                      double* right_hand_sides) const {
+    Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
+    const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
+    if constexpr (Functor::kDerivatives == 0) {
+      span_basis.Evaluate(t, site.mutable_basis());
+    } else {
+      EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span, t,
+                                  Functor::kDerivatives, site.mutable_basis());
+    }
+    Pack root(1.0);
+    if constexpr (kWeighted) {
+      root = PackOf<kInARow>(sites_.weights, 1, first, last);
+      root = root.Map([](double weight) { return std::sqrt(weight); });
+    }
+    site.set_root_weight(root);
+    site.set_variables(points);
+    Form result;
+    for (int c = 0; c < dimension(); ++c) {
+      Pack point(0.0);
+      if (sites_.points != nullptr) {
+        point =
+            (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
+            setting_.scale;
+      }
+      site.mutable_point()[0] = point;
+      functor_(site, points, &result);
+      (-result.constant).Store(right_hand_sides + c * stride);
+    }
+    for (int j = 0; j < order(); ++j) {
+      result.coefficient[j].Store(coefficients + j * stride);
+    }
+  }
+
+  const FitSetting& setting_;
+  const Sites& sites_;
+  const BsplineBasis& basis_;
+  const Functor& functor_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_COST_FUNCTIONS_FUNCTOR_ROWS_H_
