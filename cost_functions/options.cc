@@ -12,22 +12,16 @@
 namespace batten {
 namespace {
 
+/// As users typed it.
+std::string QuotedText(const std::string& text) {
+  constexpr std::size_t kLongest = 100;
+  return Quoted(text, kLongest);
+}
+
 std::string Joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
-}
-
-// ASCII and one line whatever was typed: half a UTF-8 character would spoil the output.
-std::string Quoted(const std::string& text) {
-  constexpr size_t kLongest = 100;
-  const char* const digits = "0123456789abcdef";
-  std::string quoted = "\"";
-  for (const unsigned char c : text.substr(0, kLongest)) {
-    if (c >= 32 && c < 127) quoted += static_cast<char>(c);
-    if (c < 32 || c >= 127) quoted += {'\\', 'x', digits[c / 16], digits[c % 16]};
-  }
-  return quoted + (text.size() > kLongest ? "...\"" : "\"");
 }
 
 // Swapped neighbours, the commonest slip, count once.
@@ -69,7 +63,7 @@ bool ParseInto(const OptionInfo& info, const std::string& text, OptionValues* va
 
 std::string UnknownOptionMessage(const std::vector<OptionInfo>& infos, const std::string& owner,
                                  const std::string& option) {
-  const std::string found = owner + " has no option " + Quoted(option);
+  const std::string found = owner + " has no option " + QuotedText(option);
   if (infos.empty()) return found + "; it has none";
   std::vector<std::string> names;
   for (const OptionInfo& info : infos) names.push_back(info.name);
@@ -134,9 +128,10 @@ class SpecParser {
   bool Refuse(size_t position, const std::string& allowed) const {
     std::string where = "the end";
     if (position < text_.size()) {
-      where = Quoted(text_.substr(position, 1)) + " at character " + std::to_string(position + 1);
+      where =
+          QuotedText(text_.substr(position, 1)) + " at character " + std::to_string(position + 1);
     }
-    *error_ = "found " + where + " of " + Quoted(text_) + "; allowed: " + allowed;
+    *error_ = "found " + where + " of " + QuotedText(text_) + "; allowed: " + allowed;
     return false;
   }
 
@@ -273,7 +268,7 @@ std::string NearestName(const std::string& name, const std::vector<std::string>&
 
 std::string UnknownNameMessage(const std::string& kind, const std::string& name,
                                const std::vector<std::string>& known) {
-  const std::string found = "unknown " + kind + " " + Quoted(name);
+  const std::string found = "unknown " + kind + " " + QuotedText(name);
   if (known.empty()) return found + "; none is known";
   return found + "; did you mean " + NearestName(name, known) + "? known: " + Joined(known);
 }
@@ -300,6 +295,16 @@ bool ParseNumber(const std::string& text, double* value) {
   if (result.ec != std::errc() || result.ptr != end || !std::isfinite(number)) return false;
   *value = number;
   return true;
+}
+
+std::string Quoted(std::string_view text, std::size_t longest) {
+  const char* const digits = "0123456789abcdef";
+  std::string quoted = "\"";
+  for (const unsigned char c : text.substr(0, longest)) {
+    if (c >= 32 && c < 127) quoted += static_cast<char>(c);
+    if (c < 32 || c >= 127) quoted += {'\\', 'x', digits[c / 16], digits[c % 16]};
+  }
+  return quoted + (text.size() > longest ? "...\"" : "\"");
 }
 
 }  // namespace batten

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -76,6 +77,9 @@ std::string NearestName(const std::string& name, const std::vector<std::string>&
 /// `unknown solver "lbgfs"; did you mean lbfgs? known: cg, gim, lbfgs`
 std::string UnknownNameMessage(const std::string& kind, const std::string& name,
                                const std::vector<std::string>& known);
+/// `text` in double quotes, on one line and in ASCII whatever it is: other bytes as \xNN, at most
+/// `longest` of them.
+std::string Quoted(std::string_view text, std::size_t longest);
 /// Shortest text that reads back to the same double; "inf", "-inf", "nan".
 std::string NumberText(double value);
 /// Whole-text parse; false for anything else than one finite number.

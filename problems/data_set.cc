@@ -17,16 +17,10 @@ namespace {
 
 constexpr double kLargest = 1e150;  // its square, and the sum of many of them, is still a double
 
-// ASCII and one line whatever stands in the file: it may be a picture.
-std::string Quoted(std::string_view text) {
-  constexpr size_t kLongest = 40;
-  const char* const digits = "0123456789abcdef";
-  std::string quoted = "\"";
-  for (const unsigned char c : text.substr(0, kLongest)) {
-    if (c >= 32 && c < 127) quoted += static_cast<char>(c);
-    if (c < 32 || c >= 127) quoted += {'\\', 'x', digits[c / 16], digits[c % 16]};
-  }
-  return quoted + (text.size() > kLongest ? "...\"" : "\"");
+/// What stands in the file: it may be a picture.
+std::string QuotedField(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  return Quoted(text, kLongest);
 }
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
@@ -94,7 +88,7 @@ class DataSetReader {
         column = dimension_++;
       }
       if (column < 0 || HasColumn(column)) {
-        return Refuse(columns_.size() + 1, Quoted(field) + " as a column name", FreeNames());
+        return Refuse(columns_.size() + 1, QuotedField(field) + " as a column name", FreeNames());
       }
       columns_.push_back(column);
     }
@@ -138,7 +132,7 @@ class DataSetReader {
       double* const value = &values[columns_[count]];
       const bool is_weight = columns_[count] == kWeight;
       if (!ParseField(field, value) || (is_weight && *value < 0.0)) {
-        return Refuse(count + 1, Quoted(field),
+        return Refuse(count + 1, QuotedField(field),
                       is_weight ? "a weight from 0 to 1e150" : "a number from -1e150 to 1e150");
       }
     }

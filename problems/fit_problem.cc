@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace batten {
 
@@ -257,15 +260,15 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
       std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
   problem->AddVariables("control_points", fit->Variables(fit->StartPoints()));
   double largest_weight = 0.0;
+  std::set<std::pair<const Term*, std::map<std::string, std::string>>> meanings;
   for (const NameSpec& name : fit->spec_.terms) {
-    for (const Problem::TermInstance& other : problem->terms()) {
-      if (other.name != name.ToString()) continue;
-      *error = "term " + other.name + " is given twice; give it once, with the sum of the weights";
-      return nullptr;
-    }
     const Term* term = nullptr;
     OptionValues options;
     if (!TermRegistry::Global().Resolve(name, &term, &options, error)) return nullptr;
+    if (!meanings.emplace(term, options.ToText()).second) {
+      *error = "term " + name.ToString() + " is given twice; give it once, with twice the weight";
+      return nullptr;
+    }
     auto family = term->MakeFamily(fit->setting_, options, error);
     if (family == nullptr) return nullptr;
     largest_weight = std::max(largest_weight, family->weight());

@@ -57,12 +57,16 @@ Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* conte
   } else {
     const Points start = Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
     const NearestSolution solution = SolveNearest(view.row_source(), start);
-    if (solution.method.rfind("none", 0) == 0) {
+    if (!solution.found) {
       return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
     }
     *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
     message = "the normal equations are singular to working precision; solved by " +
-              solution.method + (solution.unique ? "" : ", nearest to the start");
+              solution.method +
+              (solution.unique ? ""
+                               : ", rank " + std::to_string(solution.rank) + " of " +
+                                     std::to_string(view.num_points()) +
+                                     ", nearest to the start; banded_qr names what lacks data");
   }
   if (!x->allFinite()) {
     return {StopReason::kNumericalFailure, "the factorization has no finite answer"};

@@ -1,5 +1,9 @@
 #include "solvers/banded_qr.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "problems/fit_problem.h"
 #include "splines/banded_qr.h"
 #include "splines/nearest_solution.h"
@@ -8,6 +12,17 @@
 namespace batten {
 
 namespace {
+
+/// Data are of size 1 inside: where control points lie far off, differences of them lose digits.
+std::string DigitsWarning(const Points& control_points) {
+  const double largest = control_points.cwiseAbs().maxCoeff();
+  constexpr double kFarOff = 1e4;
+  if (!(largest > kFarOff)) return "";
+  const double digits = -std::log10(std::numeric_limits<double>::epsilon() * largest);
+  return "control points lie up to " + NumberText(std::exp2(std::round(std::log2(largest)))) +
+         " times the size of the data away, where they are hardly determined: only " +
+         std::to_string(std::max(0, static_cast<int>(digits))) + " digits of the curve are sure";
+}
 
 /// Which control points lack data, where a fit of data points alone does.
 std::string ShortageText(const Problem& problem) {
@@ -52,13 +67,14 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
   const CurveView& view = *objective->curve_view();
   const Points start = Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
   const NearestSolution solution = SolveNearest(view.row_source(), start);
-  if (solution.method.rfind("none", 0) == 0 || !solution.control_points.allFinite()) {
+  if (!solution.found) {
     return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
   }
   *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
   context->Note("smallest over largest diagonal entry of R", NumberText(solution.diagonal_ratio));
   context->Iterate(*x);
-  if (solution.unique) return {StopReason::kSolved, ""};
+  const std::string far_off = DigitsWarning(solution.control_points);
+  if (solution.unique) return {StopReason::kSolved, far_off};
   context->OffTheClock([&] {
     const std::string shortage = ShortageText(objective->problem());
     if (!shortage.empty()) context->Note("Schoenberg-Whitney conditions", shortage);
@@ -66,7 +82,7 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
   return {StopReason::kSolved, "the minimum is not unique: rank " + std::to_string(solution.rank) +
                                    " of " + std::to_string(view.num_points()) +
                                    "; this is the solution nearest to the start (" +
-                                   solution.method + ")"};
+                                   solution.method + ")" + (far_off.empty() ? "" : "; " + far_off)};
 }
 
 }  // namespace batten

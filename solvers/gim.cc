@@ -94,8 +94,7 @@ std::string GimSolver::WhyUnsupported(const Objective& objective) const {
   if (fit == nullptr || problem.terms().size() != 1 || problem.terms()[0].family->weight() != 1.0 ||
       fit->data().weights.has_value() || NameOf(problem.terms()[0].name) != "interpolation") {
     return "gim moves control points by residuals of the interpolation term alone, without "
-           "weights; "
-           "use lspia";
+           "weights; use lspia";
   }
   if (!problem.elimination().trivial()) return "gim takes no constraints; use lspia";
   const auto m = std::to_string(fit->parameters().size());

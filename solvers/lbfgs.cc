@@ -163,10 +163,15 @@ std::optional<Outcome> LbfgsSolver::DoStep(Eigen::VectorXd* x) {
   return std::nullopt;
 }
 
-std::vector<double> LbfgsSolver::State() const { return memory_.ToNumbers(); }
+std::vector<double> LbfgsSolver::State() const {
+  std::vector<double> state = memory_.ToNumbers();
+  state.push_back(residual_size_);
+  return state;
+}
 
 void LbfgsSolver::Restore(const std::vector<double>& state) {
-  memory_.FromNumbers(state, gradient_.size());
+  memory_.FromNumbers({state.begin(), state.end() - 1}, gradient_.size());
+  residual_size_ = state.back();
 }
 
 }  // namespace batten

@@ -116,4 +116,16 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
   return std::nullopt;
 }
 
+std::vector<double> LspiaSolver::State() const {
+  std::vector<double> state(last_move_.data(), last_move_.data() + last_move_.size());
+  state.push_back(alternations_);
+  return state;
+}
+
+void LspiaSolver::Restore(const std::vector<double>& state) {
+  last_move_ =
+      Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()) - 1);
+  alternations_ = static_cast<int>(state.back());
+}
+
 }  // namespace batten

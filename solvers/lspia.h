@@ -14,6 +14,8 @@ class LspiaSolver final : public FixedPoint {
   SolverInfo Info() const override { return ClassInfo(); }
   std::string WhyUnsupported(const Objective& objective) const override;
   Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) override;
+  std::vector<double> State() const override;
+  void Restore(const std::vector<double>& state) override;
 
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;

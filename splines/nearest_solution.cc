@@ -198,11 +198,11 @@ NearestSolution SolveNearest(const RowSource& rows, const Points& start) {
     result.rank = fronts.rank();
     result.method = "minimum norm, front by front";
   }
-  result.unique = result.rank == shape.num_columns;
-  if (result.method.empty() || !result.control_points.allFinite()) {
+  result.found = !result.method.empty() && result.control_points.allFinite();
+  result.unique = result.found && result.rank == shape.num_columns;
+  if (!result.found) {
     result.control_points = start;
     result.rank = -1;
-    result.unique = false;
     result.method = "none, numbers are not finite";
   }
   return result;

@@ -14,9 +14,12 @@ namespace batten {
 ///   exchanges, then what separates them; pivots up to BandedQr::kRankTolerance times the largest
 ///   diagonal entry of the band's R count as zero.
 /// - "none, ...": rows or start are not finite; the start is returned.
+/// @warning Pivots are no singular values: where these fall gradually to the tolerance and below,
+/// A may lose a few more ranks than the pivots say, and control points then lie very far off.
 struct NearestSolution {
   Points control_points;
-  int rank = -1;        // -1: not known, with method "none, ..."
+  bool found = false;   // false with method "none, ...": the control points are the start
+  int rank = -1;        // by pivots as above, which may be a few above that by singular values
   bool unique = false;  // rank == n
   double diagonal_ratio = 0.0;
   std::string method;

@@ -1,5 +1,11 @@
 #include <gflags/gflags.h>
 
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "solvers/solver_registry.h"
 #include "tools/command.h"
 #include "tools/comparison_session.h"
 #include "tools/run_flags.h"
@@ -58,12 +64,15 @@ bool FindContests(std::vector<Contest>* contests, std::string* error) {
 }
 
 bool CheckSolvers(const std::vector<NameSpec>& solvers, std::string* error) {
-  for (size_t i = 0; i < solvers.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      if (solvers[i].ToString() != solvers[j].ToString()) continue;
-      *error = RefusedFlag("solvers", solvers[i].ToString() + " twice", "each solver once");
-      return false;
-    }
+  // By what they mean: lbfgs is lbfgs/memory=10.
+  std::set<std::tuple<std::string, std::map<std::string, std::string>, std::string>> meanings;
+  for (const NameSpec& solver : solvers) {
+    OptionValues options;
+    if (SolverRegistry::Global().Make(solver, &options, error) == nullptr) return false;
+    const std::string wrapped = solver.wrapped == nullptr ? "" : solver.wrapped->ToString();
+    if (meanings.emplace(solver.name, options.ToText(), wrapped).second) continue;
+    *error = RefusedFlag("solvers", solver.ToString() + " twice", "each solver once");
+    return false;
   }
   return true;
 }

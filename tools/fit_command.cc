@@ -182,12 +182,10 @@ Command FitCommand() {
   command.summary = "fits one spline to the points of FILE (- is standard input)";
   command.details = {
       "FILE is CSV with a header (x,y or x,y,z, ...; also t for given parameters and weight) or "
-      "rows "
-      "of numbers. Lengths are in the unit of the data, E in its square; seconds are seconds.",
+      "rows of numbers. Lengths are in the unit of the data, E in its square; seconds are seconds.",
       "Exit status 1: the solver failed or did not reach what was asked. line_search_ended and "
-      "native_stop count as reached where the audit finds |g| at most 1.5e-8 |g(start)|, below "
-      "which "
-      "E no longer falls visibly. Status 3: the claim failed its audit. Without gnuplot --figure "
+      "native_stop count as reached where |g| is so small that a step along -g lowers E by less "
+      "than the rounding of E. Status 3: the claim failed its audit. Without gnuplot --figure "
       "gives status 2; all but the picture is written."};
   command.examples = {
       "batten fit data/animals/rhino_100.csv --closed --control_points=80 --out=fit.json",

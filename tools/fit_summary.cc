@@ -116,7 +116,8 @@ std::string NotReachedMessage(const RunResult& run, const RunSpec& spec) {
                      Plural(run.iterations, "iteration") + " at |g| = " + Short(run.gradient_norm);
   if (spec.mode == Mode::kRace) {
     const double asked = spec.gradient_tolerance * run.start_gradient_norm;
-    text += "; asked: at most " + Short(std::max(asked, run.gradient_floor));
+    text +=
+        "; asked: at most " + Short(std::max({asked, run.gradient_floor, run.line_search_floor}));
   }
   return text;
 }

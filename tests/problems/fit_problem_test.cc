@@ -84,6 +84,9 @@ TEST(FitProblem, RefusesTermsThatSayNothing) {
               HasSubstr("the largest weight of a term is 0"));
   EXPECT_THAT(WhyNot(MakeNoisyLoop(30, 2, 3), MakeSpec(3, false, 8, "interpolation,interpolation")),
               HasSubstr("term interpolation is given twice"));
+  EXPECT_THAT(WhyNot(MakeNoisyLoop(30, 2, 3),
+                     MakeSpec(3, false, 8, "interpolation,interpolation/weight=1")),
+              HasSubstr("term interpolation/weight=1 is given twice"));
   EXPECT_THAT(WhyNot(MakeNoisyLoop(30, 2, 3), MakeSpec(3, false, 8, "interpolation/loss_scale=2")),
               HasSubstr("loss_scale is given without a loss"));
 }

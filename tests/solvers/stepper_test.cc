@@ -114,6 +114,26 @@ TEST(Stepper, LbfgsGoesOnFromItsStateOnCurvedObjectives) {
   }
 }
 
+TEST(Stepper, LspiaSeesAStallAsSoonAsIfItHadNotBeenLeft) {
+  // The dolphin, whose largest column makes an eigenvalue of -1.
+  FitSpec spec = MakeSpec(3, true, 40);
+  spec.parameters = Parameterization::kUniform;
+  const auto problem = MakeFileFit("animals/dolphin_80.csv", spec);
+  TestContextOptions options;
+  options.max_iterations = 2000;
+  const SolverTrial whole(*problem, "lspia/step=max_column", options);
+  ASSERT_EQ(whole.outcome.reason, StopReason::kStalled);
+  ExpectResumes(*problem, "lspia/step=max_column", whole.iterations() - 8, whole.iterations() + 30);
+}
+
+TEST(Stepper, LbfgsGoesOnFromItsStateWithoutCompilationOrWithALoss) {
+  for (const int before : {1, 12, 30}) {
+    const auto problem = MakeFit(MakeNoisyLoop(60, 2, 4),
+                                 MakeSpec(3, true, 17, "interpolation/loss=cauchy/loss_scale=0.1"));
+    ExpectResumes(*problem, "lbfgs", before, 45);
+  }
+}
+
 TEST(Stepper, AMapLeavesItsArgumentAndIsTheStep) {
   const auto problem = MakeCirculantFit(30, 1);
   for (const std::string& name : StepperNames()) {
