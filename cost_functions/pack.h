@@ -8,14 +8,10 @@
 namespace batten {
 
 /// kRowPack doubles that are computed with as one: the scalar in which affine residuals are
-/// evaluated for several sites at a time. Made of vectors as wide as the processor's registers: GCC
-/// builds a wider vector's copies element by element through memory.
+/// evaluated for several sites at a time. Made of the widest vectors every x86-64 has; with wider
+/// ones, where the processor has them, putting them together costs twice what they save.
 struct Pack {
-#ifdef __AVX__
-  static constexpr int kLaneSize = 4;
-#else
   static constexpr int kLaneSize = 2;
-#endif
   static constexpr int kLanes = kRowPack / kLaneSize;
   typedef double Lane __attribute__((vector_size(kLaneSize * sizeof(double))));
 
