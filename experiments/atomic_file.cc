@@ -62,7 +62,7 @@ int OpenTemporary(const std::string& target, std::string* temporary) {
 std::string WithoutLinks(const std::string& path) {
   char* const resolved = realpath(path.c_str(), nullptr);
   if (resolved == nullptr) return path;
-  const std::string result = resolved;
+  std::string result = resolved;
   free(resolved);
   return result;
 }

@@ -68,7 +68,7 @@ class DataSetReader {
     double number = 0.0;
     const auto result = std::from_chars(begin.data(), begin.data() + begin.size(), number);
     const bool begins_with_number = result.ec != std::errc::invalid_argument;
-    is_csv_ = !begins_with_number || line.find(',') != line.npos;
+    is_csv_ = !begins_with_number || line.find(',') != std::string_view::npos;
     if (is_csv_) return ReadHeader(line);
     for (std::string_view field; NextField(&line, &field); ++dimension_) {
       columns_.push_back(dimension_);

@@ -49,8 +49,9 @@ double ParameterAt(const Eigen::VectorXd& parameters, std::int64_t numerator,
   const auto at = [&](std::int64_t i) {
     if (period == 0.0) return parameters[i];
     // begin + (end - begin) may round to below end, and the map would step back at the seam.
+    const std::int64_t turns = i / m;
     return std::min(parameters[i % m], parameters[0] + period) +
-           static_cast<double>(i / m) * period;
+           static_cast<double>(turns) * period;
   };
   const std::int64_t i = numerator / denominator;
   const std::int64_t rest = numerator % denominator;
