@@ -15,8 +15,8 @@ template <typename S>
 struct DirectionalDual {
   DirectionalDual() = default;
   // Conversion from plain numbers is what lets functors write `T(0)` and `2.0 * t`.
-  DirectionalDual(double number)
-      : value(number), slope(0.0) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  DirectionalDual(double number) : value(number), slope(0.0) {}
   DirectionalDual(const S& v, const S& s) : value(v), slope(s) {}
 
   DirectionalDual& operator+=(const DirectionalDual& b) { return *this = *this + b; }

@@ -165,7 +165,7 @@ OptionInfo OptionInfo::Word(std::string name, std::string default_value,
 
 std::string OptionInfo::RangeText() const {
   if (kind == Kind::kWord) return "one of " + Joined(words);
-  const std::string both = NumberText(lowest) + " to " + NumberText(highest);
+  std::string both = NumberText(lowest) + " to " + NumberText(highest);
   if (std::isinf(default_number)) return both;  // then infinity is a value that can be asked for
   const double limit = kind == Kind::kInteger ? INT_MAX : HUGE_VAL;
   const bool has_lowest = lowest > (kind == Kind::kInteger ? INT_MIN : -HUGE_VAL);

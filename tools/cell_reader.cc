@@ -32,7 +32,7 @@ class RowFields {
 
   std::string TextOf(const Json& value) {
     Require(value.is_string());
-    const std::string text = is_good_ ? value.get<std::string>() : "";
+    std::string text = is_good_ ? value.get<std::string>() : "";
     Require(
         std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }));
     return text;

@@ -66,7 +66,8 @@ TEST(FitCommand, FitsTheRhinocerosAndWritesAllFilesItIsAskedFor) {
 
 TEST(FitCommand, ReachesTheMinimumWithEverySolverOfTheList) {
   // As many control points as points, so that gim applies too: the curve passes through all.
-  for (const json& solver : RunBatten({"list", "solvers", "--json"}).Json()["solvers"]) {
+  const json list = RunBatten({"list", "solvers", "--json"}).Json();
+  for (const json& solver : list["solvers"]) {
     if (solver["wraps_solver"].get<bool>()) continue;
     const std::string name = solver["name"];
     const json fit = Fit({"--problem=rhino_interpolation", "--solver=" + name});
