@@ -81,7 +81,7 @@ SolverInfo CeresLbfgsSolver::ClassInfo() {
 }
 
 std::string CeresLbfgsSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoBounds(objective, "ceres_lbfgs");
+  std::string why = WhyNoBounds(objective, "ceres_lbfgs");
   if (!why.empty()) return why;
   const std::string& form = options_.Word("form");
   if (form == "problem") return WhyNoCeresProblem(objective.problem(), "ceres_lbfgs/form=problem");

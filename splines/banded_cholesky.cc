@@ -306,7 +306,7 @@ double BandedCholesky::ConditionEstimate() const {
     const double norm = OneNorm(x);
     if (step > 0 && !(norm > estimate)) break;
     estimate = norm;
-    std::vector<double> previous = std::move(sign);
+    const std::vector<double> previous = sign;
     sign.resize(n_);
     for (int i = 0; i < n_; ++i) sign[i] = x[i] >= 0.0 ? 1.0 : -1.0;
     if (sign == previous) break;
