@@ -115,18 +115,16 @@ Status RunControl::Iterate(const Eigen::VectorXd& x) {
 void RunControl::Book(const Eigen::VectorXd& x) {
   if (iteration_ == 0) result_->setup_seconds = watch_.seconds();
   const Units& units = problem_.units();
-  double energy = std::numeric_limits<double>::quiet_NaN();
+  double energy = 0.0;
   Eigen::VectorXd gradient;
-  const bool finite =
-      x.allFinite() && reporter_.EnergyAndGradient(x, &energy, &gradient) == Status::kOk;
+  const double norm = Evaluate(x, &energy, &gradient);
   row_.iteration = iteration_;
   row_.counts = result_->counts;
   row_.counts.distinct_points = static_cast<long>(points_.size());
   row_.seconds = watch_.seconds();
   row_.cpu_seconds = watch_.cpu_seconds();
   row_.energy = energy * units.energy;
-  row_.gradient_norm =
-      finite ? gradient.norm() * units.gradient : std::numeric_limits<double>::quiet_NaN();
+  row_.gradient_norm = norm * units.gradient;
   row_.step_norm = last_x_.size() == x.size() ? StepNorm(x) * units.length : 0.0;
   row_.term_energies.clear();
   if (spec_.keep_trace && problem_.terms().size() > 1) {
@@ -192,15 +190,20 @@ StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd
   return StopReason::kNotRun;
 }
 
+/// |g|, as inside. NaN where E or g has no value; E is then what was found of it, or NaN.
+double RunControl::Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient) {
+  *energy = std::numeric_limits<double>::quiet_NaN();
+  const bool finite =
+      x.allFinite() && reporter_.EnergyAndGradient(x, energy, gradient) == Status::kOk;
+  return finite ? gradient->norm() : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// For runs that ended before their set-up was done.
 void RunControl::BookStart() {
-  double energy = std::numeric_limits<double>::quiet_NaN();
   Eigen::VectorXd gradient;
-  const bool finite =
-      reporter_.EnergyAndGradient(reporter_.start(), &energy, &gradient) == Status::kOk;
-  result_->start_energy = energy * problem_.units().energy;
-  result_->start_gradient_norm = finite ? gradient.norm() * problem_.units().gradient
-                                        : std::numeric_limits<double>::quiet_NaN();
+  const double norm = Evaluate(reporter_.start(), &result_->start_energy, &gradient);
+  result_->start_energy *= problem_.units().energy;
+  result_->start_gradient_norm = norm * problem_.units().gradient;
 }
 
 /// The step that is best along -g lowers E by |g|^2 / (2 q), q = g'Hg / g'g.
@@ -208,8 +211,8 @@ double RunControl::LineSearchFloor(const Eigen::VectorXd& x, double energy,
                                    const Eigen::VectorXd& gradient) {
   const double squared_norm = gradient.squaredNorm();
   Eigen::VectorXd product;
-  if (squared_norm == 0.0 || reporter_.HessianTimes(x, gradient, &product) != Status::kOk)
-    return 0.0;
+  if (squared_norm == 0.0) return 0.0;
+  if (reporter_.HessianTimes(x, gradient, &product) != Status::kOk) return 0.0;
   const double curvature = gradient.dot(product) / squared_norm;
   const double noise = Objective::EnergyRoundingFloor(energy, reporter_.ResidualSize(x));
   return curvature > 0.0 ? std::sqrt(2.0 * curvature * noise) : 0.0;
@@ -218,15 +221,14 @@ double RunControl::LineSearchFloor(const Eigen::VectorXd& x, double energy,
 void RunControl::Finish(const Eigen::VectorXd& x) {
   watch_.Pause();
   const Units& units = problem_.units();
-  double energy = std::numeric_limits<double>::quiet_NaN();
+  double energy = 0.0;
   Eigen::VectorXd gradient;
-  const bool finite =
-      x.allFinite() && reporter_.EnergyAndGradient(x, &energy, &gradient) == Status::kOk;
+  const double norm = Evaluate(x, &energy, &gradient);
   if (iteration_ < 0) BookStart();
   result_->x = reporter_.Expand(x);
   result_->energy = energy * units.energy;
-  result_->gradient_norm =
-      finite ? gradient.norm() * units.gradient : std::numeric_limits<double>::quiet_NaN();
+  result_->gradient_norm = norm * units.gradient;
+  const bool finite = !std::isnan(norm);
   if (finite) result_->gradient_floor = reporter_.GradientRoundingFloor(x) * units.gradient;
   const StopReason reason = result_->outcome.reason;
   if (finite && (reason == StopReason::kLineSearchEnded || reason == StopReason::kNativeStop)) {

@@ -51,6 +51,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   void Book(const Eigen::VectorXd& x);
   StopReason CheckStop(const TraceRow& row);
   StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
+  double Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient);
   void BookStart();
   double LineSearchFloor(const Eigen::VectorXd& x, double energy, const Eigen::VectorXd& gradient);
   double StepNorm(const Eigen::VectorXd& x) const;

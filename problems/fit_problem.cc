@@ -142,10 +142,13 @@ bool CurveFit::PlaceParameters(std::string* error) {
 bool CurveFit::Scale(std::string* error) {
   // Points without weight say nothing of the size of the fit.
   const Eigen::VectorXd* const weights = data_.weights.has_value() ? &*data_.weights : nullptr;
-  Eigen::RowVectorXd low = data_.points.colwise().minCoeff();
-  Eigen::RowVectorXd high = data_.points.colwise().maxCoeff();
-  if (weights != nullptr) {
-    low.setConstant(std::numeric_limits<double>::infinity());
+  Eigen::RowVectorXd low;
+  Eigen::RowVectorXd high;
+  if (weights == nullptr) {
+    low = data_.points.colwise().minCoeff();
+    high = data_.points.colwise().maxCoeff();
+  } else {
+    low.setConstant(dimension(), std::numeric_limits<double>::infinity());
     high = -low;
     for (Eigen::Index i = 0; i < data_.points.rows(); ++i) {
       if ((*weights)[i] == 0.0) continue;

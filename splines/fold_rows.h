@@ -9,7 +9,7 @@
 namespace batten {
 
 /// Rows of one window that are folded at a time, at most: square roots and divisions per fold are
-/// then shared by more rows than a block has.
+/// then shared by the rows of as many small blocks as make up a large one.
 inline constexpr int kRowsPerFold = kMaxRowsPerBlock;
 
 /// Rows to be folded, column by column, coefficients first, then right-hand sides: entry (i, k)
