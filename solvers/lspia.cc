@@ -1,8 +1,9 @@
 #include "solvers/lspia.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "solvers/lanczos.h"
+#include "solvers/normal_spectrum.h"
 
 namespace batten {
 
@@ -15,9 +16,11 @@ SolverInfo LspiaSolver::ClassInfo() {
   info.supports = {"linear constraints", "weights", "any rank"};
   info.native_rule = NativeRule::kStep;
   info.options = {
-      OptionInfo::Word("step", "diagonal", {"diagonal", "max_column", "optimal"},
+      OptionInfo::Word("step", "diagonal",
+                       {"diagonal", "max_column", "optimal", "cauchy", "barzilai_borwein"},
                        "diagonal: 1 / column sum per control point; max_column: 2 / largest column "
-                       "sum; optimal: 2 / (l1 + ln)"),
+                       "sum; optimal: 2 / (l1 + ln); cauchy: the best step of each iteration; "
+                       "barzilai_borwein: the best one of the iteration before"),
       OptionInfo::Real("relaxation", 1.0, 1e-6, 1.0, "factor of the step"),
   };
   return info;
@@ -54,28 +57,15 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
     context()->Note("step", NumberText(step_[0]));
     return std::nullopt;
   }
-  Spectrum spectrum;
-  const auto multiply = [&view](const Eigen::VectorXd& v, Eigen::VectorXd* product) {
-    return view.NormalProduct(v, product);
-  };
-  // From N times a random vector, so that the null space, where nothing has to converge, is left
-  // out.
-  Eigen::VectorXd start;
-  Status status = multiply(RandomStart(x.size(), context()->seed()), &start);
-  constexpr double kRelativeError = 1e-3;
-  constexpr int kMaxProducts = 300;
-  if (status == Status::kOk) {
-    status = EstimateSpectrum(multiply, start, kRelativeError, kMaxProducts, &spectrum);
+  if (step_rule_ == "cauchy") {
+    step_.resize(0);
+    return std::nullopt;
   }
+  NormalSpectrum spectrum;
+  const Status status = EstimateNormalSpectrum(&view, context()->seed(), &spectrum);
   if (status != Status::kOk) return Ended(status);
-  // A Ritz value may still be below l1 by more than its error bound, which is the distance to some
-  // eigenvalue: the largest row sum of |N| is never below l1 (Gershgorin), and is taken where the
-  // recursion did not settle.
-  const bool settled =
-      spectrum.largest > 0.0 && spectrum.largest_error <= kRelativeError * spectrum.largest;
-  const double l1 =
-      settled ? std::min(largest, spectrum.largest + spectrum.largest_error) : largest;
-  const double ln = std::max(0.0, spectrum.smallest);
+  const double l1 = spectrum.largest;
+  const double ln = spectrum.smallest;
   step_.setConstant(relaxation_ * 2.0 / (l1 + ln));
   context()->Note("eigenvalues of A'A", NumberText(ln) + " to " + NumberText(l1));
   context()->Note("predicted rate", NumberText((l1 - ln) / (l1 + ln)));
@@ -85,13 +75,23 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
 std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
   last_move_.resize(0);
   alternations_ = 0;
+  guard_.Reset();
   return ChooseStep(*x);
 }
 
 Status LspiaSolver::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
-  const Status status = objective()->curve_view()->NormalResidual(x, &residual_);
-  if (status == Status::kOk) *g_of_x = x + step_.cwiseProduct(residual_);
-  return status;
+  Status status = objective()->curve_view()->NormalResidual(x, &residual_);
+  if (status != Status::kOk) return status;
+  if (step_.size() > 0) {
+    *g_of_x = x + step_.cwiseProduct(residual_);
+    return Status::kOk;
+  }
+  status = objective()->curve_view()->NormalProduct(residual_, &product_);
+  if (status != Status::kOk) return status;
+  const double curvature = residual_.dot(product_);
+  const double step = curvature > 0.0 ? relaxation_ * residual_.squaredNorm() / curvature : 0.0;
+  *g_of_x = x + step * residual_;
+  return Status::kOk;
 }
 
 std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
@@ -113,19 +113,83 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
     }
   }
   last_move_ = move;
-  return std::nullopt;
+  return guard_.Check(move.norm());
 }
 
 std::vector<double> LspiaSolver::State() const {
   std::vector<double> state(last_move_.data(), last_move_.data() + last_move_.size());
   state.push_back(alternations_);
+  guard_.AppendTo(&state);
   return state;
 }
 
 void LspiaSolver::Restore(const std::vector<double>& state) {
-  last_move_ =
-      Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()) - 1);
-  alternations_ = static_cast<int>(state.back());
+  const auto size = static_cast<Eigen::Index>(state.size()) - 3;
+  last_move_ = Eigen::Map<const Eigen::VectorXd>(state.data(), size);
+  alternations_ = static_cast<int>(state[static_cast<std::size_t>(size)]);
+  guard_.Restore(state.data() + size + 1);
+}
+
+BarzilaiBorweinLspiaSolver::BarzilaiBorweinLspiaSolver(const OptionValues& options)
+    : relaxation_(options.Real("relaxation")) {}
+
+std::string BarzilaiBorweinLspiaSolver::WhyUnsupported(const Objective& objective) const {
+  const std::string why = WhyNoCurveView(objective, "lspia");
+  return why.empty() ? WhyNoBounds(objective, "lspia") : why;
+}
+
+std::optional<Outcome> BarzilaiBorweinLspiaSolver::DoStart(Eigen::VectorXd* /*x*/) {
+  const std::vector<double> sums = objective()->curve_view()->normal_band().AbsoluteRowSums();
+  const double largest = *std::max_element(sums.begin(), sums.end());
+  if (largest == 0.0) return Outcome{StopReason::kSolved, "no data point touches a control point"};
+  first_step_ = 1.0 / largest;
+  previous_x_.resize(0);
+  guard_.Reset();
+  return std::nullopt;
+}
+
+std::optional<Outcome> BarzilaiBorweinLspiaSolver::DoStep(Eigen::VectorXd* x) {
+  const Status status = objective()->curve_view()->NormalResidual(*x, &residual_);
+  if (status != Status::kOk) return Ended(status);
+  double step = first_step_;
+  if (previous_x_.size() == x->size()) {
+    const Eigen::VectorXd move = *x - previous_x_;
+    const double curvature = move.dot(previous_residual_ - residual_);
+    const double squared = move.squaredNorm();
+    // Between the inverses of the spectrum's ends, but for rounding.
+    if (curvature > 0.0 && std::isfinite(squared / curvature)) step = squared / curvature;
+  }
+  previous_x_ = *x;
+  previous_residual_ = residual_;
+  *x += relaxation_ * step * residual_;
+  return guard_.Check(residual_.norm());
+}
+
+std::vector<double> BarzilaiBorweinLspiaSolver::State() const {
+  std::vector<double> state;
+  guard_.AppendTo(&state);
+  if (previous_x_.size() == 0) return state;
+  state.insert(state.end(), previous_x_.data(), previous_x_.data() + previous_x_.size());
+  state.insert(state.end(), previous_residual_.data(),
+               previous_residual_.data() + previous_residual_.size());
+  return state;
+}
+
+void BarzilaiBorweinLspiaSolver::Restore(const std::vector<double>& state) {
+  guard_.Restore(state.data());
+  const auto size = static_cast<Eigen::Index>(state.size() - 2) / 2;
+  previous_x_ = Eigen::Map<const Eigen::VectorXd>(state.data() + 2, size);
+  previous_residual_ = Eigen::Map<const Eigen::VectorXd>(state.data() + 2 + size, size);
+}
+
+SolverEntry LspiaEntry() {
+  return {LspiaSolver::ClassInfo(),
+          [](const OptionValues& options, std::unique_ptr<Solver>) -> std::unique_ptr<Solver> {
+            if (options.Word("step") == "barzilai_borwein") {
+              return std::make_unique<BarzilaiBorweinLspiaSolver>(options);
+            }
+            return std::make_unique<LspiaSolver>(options);
+          }};
 }
 
 }  // namespace batten

@@ -1,12 +1,14 @@
 #ifndef BATTEN_SOLVERS_LSPIA_H_
 #define BATTEN_SOLVERS_LSPIA_H_
 
+#include "solvers/solver_registry.h"
+#include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
 
 namespace batten {
 
 /// Least-squares progressive-iterative approximation: P += mu A'(Q - A P), mu a number or a
-/// diagonal. docs/solvers/lspia.md.
+/// diagonal that depends on P alone. docs/solvers/lspia.md.
 class LspiaSolver final : public FixedPoint {
  public:
   static SolverInfo ClassInfo();
@@ -24,11 +26,37 @@ class LspiaSolver final : public FixedPoint {
 
   std::string step_rule_;
   double relaxation_;
-  Eigen::VectorXd step_;      // mu per variable
+  Eigen::VectorXd step_;      // mu per variable; empty for cauchy
   Eigen::VectorXd residual_;  // A'(Q - A P) at the last point mapped
+  Eigen::VectorXd product_;
   Eigen::VectorXd last_move_;
   int alternations_ = 0;
+  StallGuard guard_;
 };
+
+/// lspia/step=barzilai_borwein: mu_k = s's / s'N s with the last move s, which makes it no map.
+class BarzilaiBorweinLspiaSolver final : public Stepper {
+ public:
+  explicit BarzilaiBorweinLspiaSolver(const OptionValues& options);
+  SolverInfo Info() const override { return LspiaSolver::ClassInfo(); }
+  std::string WhyUnsupported(const Objective& objective) const override;
+  std::vector<double> State() const override;
+  void Restore(const std::vector<double>& state) override;
+
+ private:
+  std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
+  std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+
+  double relaxation_;
+  double first_step_ = 0.0;   // 1 / largest row sum of |N|
+  Eigen::VectorXd residual_;  // A'(Q - A P) at the last point
+  Eigen::VectorXd previous_x_;
+  Eigen::VectorXd previous_residual_;
+  StallGuard guard_;
+};
+
+/// The registry's row: one of both classes, as the option `step` says.
+SolverEntry LspiaEntry();
 
 }  // namespace batten
 

@@ -27,6 +27,9 @@ struct SolverInfo {
   std::vector<std::string> supports;  ///< "bounds", "linear constraints", "losses", "weights".
   NativeRule native_rule = NativeRule::kGradient;
   bool wraps_solver = false;  ///< Written NAME:BASE.
+  std::string usual_base;     ///< Of one that wraps a solver: what "all solvers" means by it.
+  /// Empty: what it converges to is the minimum of E. Otherwise the equations of its own limit.
+  std::string limit;
   std::vector<OptionInfo> options;
 };
 

@@ -2,24 +2,56 @@
 
 #include <glog/logging.h>
 
+#include "solvers/anderson.h"
 #include "solvers/banded_cholesky.h"
 #include "solvers/banded_qr.h"
 #include "solvers/ceres_lbfgs.h"
 #include "solvers/ceres_lm.h"
 #include "solvers/cg.h"
+#include "solvers/chebyshev_lspia.h"
+#include "solvers/extended_pia.h"
+#include "solvers/gauss_seidel_pia.h"
 #include "solvers/gim.h"
+#include "solvers/jacobi_pia.h"
 #include "solvers/lbfgs.h"
+#include "solvers/local_pia.h"
 #include "solvers/lspia.h"
+#include "solvers/mlspia.h"
+#include "solvers/nesterov_lspia.h"
+#include "solvers/newton.h"
+#include "solvers/polyak_lspia.h"
+#include "solvers/preconditioned_pia.h"
+#include "solvers/randomised_pia.h"
+#include "solvers/sor_pia.h"
+#include "solvers/weighted_pia.h"
 
 namespace batten {
 namespace {
 
 // The built-in solvers: one line each.
-constexpr SolverEntry (*kBuiltInSolvers[])() = {
-    &MakeSolverEntry<BandedQrSolver>,   &MakeSolverEntry<BandedCholeskySolver>,
-    &MakeSolverEntry<GimSolver>,        &MakeSolverEntry<LspiaSolver>,
-    &MakeSolverEntry<CgSolver>,         &MakeSolverEntry<LbfgsSolver>,
-    &MakeSolverEntry<CeresLbfgsSolver>, &MakeSolverEntry<CeresLmSolver>,
+SolverEntry (*const kBuiltInSolvers[])() = {
+    &MakeSolverEntry<BandedQrSolver>,
+    &MakeSolverEntry<BandedCholeskySolver>,
+    &MakeSolverEntry<NewtonSolver>,
+    &MakeSolverEntry<GimSolver>,
+    &MakeSolverEntry<WeightedPiaSolver>,
+    &MakeSolverEntry<LocalPiaSolver>,
+    &MakeSolverEntry<ExtendedPiaSolver>,
+    &MakeSolverEntry<PreconditionedPiaSolver>,
+    &LspiaEntry,
+    &MakeSolverEntry<JacobiPiaSolver>,
+    &MakeSolverEntry<GaussSeidelPiaSolver>,
+    &MakeSolverEntry<SorPiaSolver>,
+    &MakeSolverEntry<PolyakLspiaSolver>,
+    &MakeSolverEntry<NesterovLspiaSolver>,
+    &MakeSolverEntry<MlspiaSolver>,
+    &MakeSolverEntry<ChebyshevLspiaSolver>,
+    &MakeSolverEntry<RandomisedPiaSolver>,
+    &AndersonEntry,
+    &MakeSolverEntry<CgSolver>,
+    &MakeSolverEntry<LbfgsSolver>,
+    &MakeSolverEntry<CeresLbfgsSolver>,
+    &MakeSolverEntry<CeresLmSolver>,
 };
 
 }  // namespace

@@ -6,12 +6,21 @@ std::optional<Outcome> Stepper::Start(Objective* objective, RunContext* context,
                                       Eigen::VectorXd* x) {
   objective_ = objective;
   context_ = context;
+  warning_.clear();
   return DoStart(x);
 }
 
 Outcome Stepper::Ended(Status status) const {
-  if (status == Status::kStop) return {context_->stop_reason(), ""};
+  if (status == Status::kStop) {
+    const StopReason reason = context_->stop_reason();
+    return {reason, reason == StopReason::kDiverged ? warning_ : ""};
+  }
   return {StopReason::kNumericalFailure, "the objective has no finite value there"};
+}
+
+void Stepper::WarnOfDivergence(const std::string& why) {
+  warning_ = why;
+  context_->Note("may not converge", why);
 }
 
 Outcome Stepper::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {

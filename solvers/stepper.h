@@ -25,6 +25,9 @@ class Stepper : public Solver {
   RunContext* context() const { return context_; }
   /// The outcome that goes with an evaluation's status other than kOk.
   Outcome Ended(Status status) const;
+  /// The condition for convergence does not hold: a note beside the result, and the reason given if
+  /// it diverges or stalls.
+  void WarnOfDivergence(const std::string& why);
 
  private:
   Outcome DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) final;
@@ -33,6 +36,7 @@ class Stepper : public Solver {
 
   Objective* objective_ = nullptr;
   RunContext* context_ = nullptr;
+  std::string warning_;
 };
 
 /// A stepper that is a map x -> G(x), which an acceleration can call.
@@ -41,13 +45,15 @@ class FixedPoint : public Stepper {
   /// Writes G(x); x stays.
   virtual Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) = 0;
 
- private:
-  std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+ protected:
   /// Called with x and G(x) after each plain step; an outcome ends the run (a stall guard).
   virtual std::optional<Outcome> Inspect(const Eigen::VectorXd& /*x*/,
                                          const Eigen::VectorXd& /*g_of_x*/) {
     return std::nullopt;
   }
+
+ private:
+  std::optional<Outcome> DoStep(Eigen::VectorXd* x) final;
 
   Eigen::VectorXd next_;
 };

@@ -21,10 +21,7 @@ bool IsAny(const std::string& text, const std::vector<std::string>& words) {
 
 const std::vector<Command>& Commands() {
   static const auto& commands = *new std::vector<Command>{
-      FitCommand(),
-      CompareCommand(),
-      ListCommand(),
-      HelpCommand(),
+      FitCommand(), CompareCommand(), ReproduceCommand(), ListCommand(), HelpCommand(),
   };
   return commands;
 }

@@ -38,10 +38,11 @@ struct Command {
 const std::vector<Command>& Commands();
 const Command* FindCommand(const std::string& name);
 
-Command FitCommand();      // fit_command.cc
-Command CompareCommand();  // compare_command.cc
-Command ListCommand();     // list_command.cc
-Command HelpCommand();     // help_command.cc
+Command FitCommand();        // fit_command.cc
+Command CompareCommand();    // compare_command.cc
+Command ReproduceCommand();  // reproduce_command.cc
+Command ListCommand();       // list_command.cc
+Command HelpCommand();       // help_command.cc
 
 std::string GeneralHelp();
 std::string CommandHelp(const Command& command);

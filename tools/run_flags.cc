@@ -79,7 +79,10 @@ bool SolversFromFlag(const std::string& flag, const std::string& text,
       continue;
     }
     for (const std::string& name : registry.Names()) {
-      if (!registry.Find(name)->wraps_solver) solvers->push_back({name, {}, nullptr});
+      const std::string& base = registry.Find(name)->usual_base;
+      std::shared_ptr<const NameSpec> wrapped;
+      if (!base.empty()) wrapped = std::make_shared<NameSpec>(NameSpec{base, {}, nullptr});
+      solvers->push_back({name, {}, wrapped});
     }
   }
   if (!is_good) *error = "--" + flag + ": " + *error;

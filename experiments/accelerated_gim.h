@@ -1,0 +1,26 @@
+#ifndef BATTEN_EXPERIMENTS_ACCELERATED_GIM_H_
+#define BATTEN_EXPERIMENTS_ACCELERATED_GIM_H_
+
+#include "experiments/reproduction.h"
+
+namespace batten {
+
+/// "Accelerated Geometric Iteration Method" (Liu, Xin, Shu, Chen, Zhang, Zhao, 2016), run again:
+/// its figures, its table and its claims.
+Reproduction AcceleratedGim();
+
+// Its experiments, one file each, accelerated_gim_NAME.cc.
+Experiment AcceleratedGimFigure1();
+Experiment AcceleratedGimOutlines();
+Experiment AcceleratedGimThirtyIterations();
+Experiment AcceleratedGimSize();
+Experiment AcceleratedGimOrder();
+Experiment AcceleratedGimSpectrum();
+Experiment AcceleratedGimOneCall();
+Experiment AcceleratedGimLargestResidual();
+Experiment AcceleratedGimUnits();
+Experiment AcceleratedGimWhenToIterate();
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_ACCELERATED_GIM_H_

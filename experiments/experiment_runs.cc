@@ -1,0 +1,133 @@
+#include "experiments/experiment_runs.h"
+
+#include <glog/logging.h>
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/comparison.h"
+#include "problems/catalogue.h"
+#include "solvers/lanczos.h"
+
+namespace batten {
+
+std::vector<std::string> RunColumns() {
+  return {"problem",    "points",        "control_points", "mode",   "solver",
+          "status",     "iterations",    "products",       "seconds", "times_cholesky",
+          "energy",     "gradient_norm", "gap",            "rate"};
+}
+
+std::vector<std::string> TraceColumns() {
+  return {"problem", "mode", "solver", "iteration", "energy", "gradient_norm", "step_norm", "gap"};
+}
+
+ProblemRuns::ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions)
+    : label_(std::move(label)),
+      problem_(std::move(problem)),
+      repetitions_(repetitions),
+      reference_(*problem_) {}
+
+double ProblemRuns::cholesky_seconds() {
+  if (cholesky_seconds_ >= 0.0 || std::isnan(cholesky_seconds_)) return cholesky_seconds_;
+  CsvTable unused(RunColumns());
+  cholesky_seconds_ = std::numeric_limits<double>::quiet_NaN();
+  RunSpec spec;
+  spec.keep_trace = false;
+  const RunResult run = Run("banded_cholesky", spec, &unused);
+  if (run.skipped.empty()) cholesky_seconds_ = unused.Number(0, "seconds");
+  return cholesky_seconds_;
+}
+
+RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTable* table,
+                           CsvTable* traces) {
+  NameSpec name;
+  std::string error;
+  CHECK(ParseNameSpec(solver, &name, &error)) << error;
+  RunSpec first = spec;
+  first.keep_iterates = spec.keep_iterates || traces != nullptr;
+  first.keep_trace = spec.keep_trace || traces != nullptr;
+  RunResult result;
+  CHECK(batten::Run(*problem_, name, first, &result, &error)) << error;
+  const CurveFit& fit = *problem_->curve_fit();
+  const std::vector<std::string> head = {label_, std::to_string(fit.parameters().size()),
+                                         std::to_string(fit.basis().num_control_points()),
+                                         ToString(spec.mode), solver};
+  std::vector<std::string> row = head;
+  if (!result.skipped.empty()) {
+    row.emplace_back("skipped");
+    row.resize(RunColumns().size());
+    table->AddRow(row);
+    return result;
+  }
+  std::vector<double> seconds = {result.seconds};
+  RunSpec again = spec;
+  again.keep_trace = again.keep_iterates = false;
+  for (int k = 1; k < repetitions_ && !InterruptRequested(); ++k) {
+    RunResult repeated;
+    batten::Run(*problem_, name, again, &repeated, &error);
+    seconds.push_back(repeated.seconds);
+  }
+  const double median = Median(seconds);
+  const double cholesky = solver == "banded_cholesky" ? median : cholesky_seconds();
+  row.insert(row.end(), {ToString(result.outcome.reason), std::to_string(result.iterations),
+                         std::to_string(result.counts.products + result.counts.gradient_calls),
+                         NumberText(median), NumberText(median / cholesky),
+                         NumberText(result.energy), NumberText(result.gradient_norm),
+                         NumberText(reference_.Gap(result.x)), NumberText(result.observed_rate)});
+  table->AddRow(row);
+  if (traces == nullptr) return result;
+  for (std::size_t k = 0; k < result.trace.size(); ++k) {
+    const TraceRow& at = result.trace[k];
+    traces->AddRow({label_, ToString(spec.mode), solver, std::to_string(at.iteration),
+                    NumberText(at.energy), NumberText(at.gradient_norm), NumberText(at.step_norm),
+                    NumberText(reference_.Gap(result.iterates[k].x))});
+  }
+  return result;
+}
+
+RunSpec NativeSpec(double gradient) {
+  RunSpec spec;
+  spec.mode = Mode::kNative;
+  spec.native_step = 1e-6;
+  spec.native_gradient = gradient;
+  return spec;
+}
+
+RunSpec RaceSpec(double tolerance) {
+  RunSpec spec;
+  spec.gradient_tolerance = tolerance;
+  return spec;
+}
+
+std::shared_ptr<const Problem> CatalogueProblem(const std::string& name, std::string* error) {
+  CatalogueEntry entry;
+  if (!FindProblem(name, &entry, error)) return nullptr;
+  return LoadProblem(entry, error);
+}
+
+std::shared_ptr<const Problem> LoopProblem(int m, int n, double size) {
+  constexpr double kNoise = 0.01;
+  constexpr std::uint64_t kSeed = 20161201;
+  const Eigen::VectorXd noise = RandomStart(2 * static_cast<Eigen::Index>(m), kSeed);
+  DataSet data;
+  data.name = "loop";
+  data.points.resize(m, 2);
+  for (int i = 0; i < m; ++i) {
+    const double a = 2.0 * M_PI * i / m;
+    data.points(i, 0) = std::cos(a) + 0.3 * std::cos(3.0 * a + 0.7) + kNoise * noise[2 * i];
+    data.points(i, 1) = std::sin(a) + 0.2 * std::sin(2.0 * a) + kNoise * noise[2 * i + 1];
+  }
+  const Eigen::RowVector2d low = data.points.colwise().minCoeff();
+  const Eigen::RowVector2d high = data.points.colwise().maxCoeff();
+  data.points *= size / (high - low).maxCoeff();
+  FitSpec spec;
+  spec.name = "loop";
+  spec.closed = true;
+  spec.control_points = n;
+  std::string error;
+  std::shared_ptr<const Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
+  CHECK(problem != nullptr) << error;
+  return problem;
+}
+
+}  // namespace batten

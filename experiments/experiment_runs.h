@@ -1,0 +1,59 @@
+#ifndef BATTEN_EXPERIMENTS_EXPERIMENT_RUNS_H_
+#define BATTEN_EXPERIMENTS_EXPERIMENT_RUNS_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/comparison_reference.h"
+#include "experiments/csv_table.h"
+#include "experiments/run.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+/// The columns that ProblemRuns::Run fills.
+std::vector<std::string> RunColumns();
+/// The columns of a table of traces, one row per iteration.
+std::vector<std::string> TraceColumns();
+
+/// Runs of several solvers on one problem, as rows of an experiment's tables.
+class ProblemRuns {
+ public:
+  /// Times are medians of `repetitions` runs. `label` stands in the column "problem".
+  ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions);
+
+  const Problem& problem() const { return *problem_; }
+  const DirectReference& reference() const { return reference_; }
+  /// Median time of banded_cholesky, measured at the first call; NaN where it does not apply.
+  double cholesky_seconds();
+
+  /// Runs `solver` (NAME/OPTION=VALUE) and adds a row to `table` (RunColumns()) and, if not null, its
+  /// trace to `traces` (TraceColumns()). A solver that does not apply gives a row that says so.
+  RunResult Run(const std::string& solver, const RunSpec& spec, CsvTable* table,
+                CsvTable* traces = nullptr);
+
+ private:
+  std::string label_;
+  std::shared_ptr<const Problem> problem_;
+  int repetitions_;
+  DirectReference reference_;
+  double cholesky_seconds_ = -1.0;
+};
+
+/// The paper's rules: largest control-point step below 1e-6 for geometric iterations, |g| below
+/// `gradient` for the others; with a trace.
+RunSpec NativeSpec(double gradient);
+/// One rule for all: |g| <= tolerance |g(start)|; with a trace.
+RunSpec RaceSpec(double tolerance);
+
+/// A problem of the catalogue. Null with one sentence in `error`.
+std::shared_ptr<const Problem> CatalogueProblem(const std::string& name, std::string* error);
+
+/// m points of a closed curve without symmetry, with noise of 1 % of its size from a fixed seed; its
+/// longest side is `size`. Uniform parameters, closed uniform cubic with n control points.
+std::shared_ptr<const Problem> LoopProblem(int m, int n, double size);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_EXPERIMENT_RUNS_H_

@@ -1,0 +1,105 @@
+#include "experiments/plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cost_functions/options.h"
+
+namespace batten {
+namespace {
+
+constexpr int kPanelWidth = 440;
+constexpr int kPanelHeight = 330;
+constexpr std::size_t kMostText = 90;
+
+// Okabe & Ito, Color Universal Design, 2008, without the yellow.
+constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                   "#56b4e9", "#e69f00", "#000000", "#888888"};
+
+std::string Color(int index) {
+  constexpr int kCount = static_cast<int>(std::size(kColors));
+  return std::string("'") + kColors[((index % kCount) + kCount) % kCount] + "'";
+}
+
+std::string StyleWords(const PlotSeries& series) {
+  const std::string color = "linecolor rgb " + Color(series.color);
+  switch (series.style) {
+    case PlotSeries::Style::kLine:
+      return "with lines linewidth 1.5 " + color;
+    case PlotSeries::Style::kDashed:
+      return "with lines linewidth 1.2 dashtype 2 " + color;
+    case PlotSeries::Style::kPoints:
+      return "with points pointtype 7 pointsize 0.4 " + color;
+    case PlotSeries::Style::kLinePoints:
+      break;
+  }
+  return "with linespoints linewidth 1.5 pointtype 7 pointsize 0.4 " + color;
+}
+
+std::string Axis(const char* axis, const std::string& label, bool log) {
+  const std::string name(axis);
+  std::string text =
+      "set " + name + "label " + GnuplotString(ShownText(label, kMostText)) + " noenhanced\n";
+  if (log) text += "set logscale " + name + "\nset format " + name + " '10^{%T}'\n";
+  return text;
+}
+
+bool IsShown(const PlotPanel& panel, double x, double y) {
+  return std::isfinite(x) && std::isfinite(y) && (!panel.log_x || x > 0.0) &&
+         (!panel.log_y || y > 0.0);
+}
+
+/// The panel's plot command; its series follow those drawn before in the data file.
+std::string PanelPlot(const PlotPanel& panel, int* num_series, std::string* data) {
+  std::string plot;
+  for (const PlotSeries& series : panel.series) {
+    std::string block;
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      if (IsShown(panel, series.x[k], series.y[k])) {
+        block += GnuplotNumbers({series.x[k], series.y[k]}) + "\n";
+      }
+    }
+    if (block.empty()) continue;
+    *data += (*num_series > 0 ? "\n\n" : "") + block;
+    plot += (plot.empty() ? "plot " : ", \\\n     ") + ("DATA index " + std::to_string(*num_series)) +
+            " using 1:2 " + StyleWords(series) +
+            (series.label.empty()
+                 ? " notitle"
+                 : " title " + GnuplotString(ShownText(series.label, kMostText)));
+    ++*num_series;
+  }
+  return plot.empty() ? "plot NaN notitle\n" : plot + "\n";
+}
+
+}  // namespace
+
+FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& panels, int columns,
+                      FileBatch* batch) {
+  const int count = static_cast<int>(panels.size());
+  const int rows = (count + columns - 1) / columns;
+  const int width = kPanelWidth * std::min(columns, count);
+  const int height = kPanelHeight * rows;
+  std::string data;
+  std::string commands = "set multiplot layout " + std::to_string(rows) + "," +
+                         std::to_string(std::min(columns, count)) +
+                         "\nset border 3 linewidth 0.8\nset tics nomirror out scale 0.6\n"
+                         "set grid linewidth 0.5 linecolor rgb '#dddddd'\n";
+  int num_series = 0;
+  for (const PlotPanel& panel : panels) {
+    commands += "unset logscale\nset format '%g'\n";
+    commands += panel.equal_scale ? "set size ratio -1\nset offsets graph 0.05, graph 0.05, "
+                                    "graph 0.05, graph 0.05\n"
+                                  : "set size noratio\nset offsets 0, 0, 0, 0\n";
+    commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
+                Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
+    commands += panel.legend
+                    ? "set key outside below center noenhanced samplen 2 font ',9'\n"
+                    : "unset key\n";
+    commands += PanelPlot(panel, &num_series, &data);
+  }
+  commands += "unset multiplot\n";
+  if (num_series == 0) return NoFigure(stem, "there is nothing to draw", batch);
+  return DrawFigure(stem, data, commands, width, height, batch);
+}
+
+}  // namespace batten

@@ -1,0 +1,38 @@
+#ifndef BATTEN_EXPERIMENTS_PLOT_H_
+#define BATTEN_EXPERIMENTS_PLOT_H_
+
+#include <string>
+#include <vector>
+
+#include "experiments/gnuplot.h"
+
+namespace batten {
+
+struct PlotSeries {
+  std::string label;  ///< Empty: not in the legend.
+  std::vector<double> x;
+  std::vector<double> y;
+  enum class Style { kLine, kPoints, kLinePoints, kDashed } style = Style::kLinePoints;
+  /// One of a fixed list of colours that are told apart without seeing red and green alike.
+  int color = 0;
+};
+
+struct PlotPanel {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  bool log_x = false;
+  bool log_y = false;
+  bool equal_scale = false;
+  bool legend = true;
+  std::vector<PlotSeries> series;
+};
+
+/// Panels in rows of `columns`, STEM.svg with script and data beside it as DrawFigure() has it.
+/// Points that a logarithmic axis cannot show are left out.
+FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& panels, int columns,
+                      FileBatch* batch);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_PLOT_H_

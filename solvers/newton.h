@@ -1,0 +1,34 @@
+#ifndef BATTEN_SOLVERS_NEWTON_H_
+#define BATTEN_SOLVERS_NEWTON_H_
+
+#include "solvers/stall_guard.h"
+#include "solvers/stepper.h"
+#include "splines/banded_cholesky.h"
+
+namespace batten {
+
+/// Newton's method: P += N^-1 A'(Q - A P). The Hessian 2 N of a fit with fixed parameters is banded,
+/// its factor too. docs/solvers/newton.md.
+class NewtonSolver final : public Stepper {
+ public:
+  static SolverInfo ClassInfo();
+  explicit NewtonSolver(const OptionValues& /*options*/) {}
+  SolverInfo Info() const override { return ClassInfo(); }
+  std::string WhyUnsupported(const Objective& objective) const override;
+  std::vector<double> State() const override;
+  void Restore(const std::vector<double>& state) override;
+
+ private:
+  std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
+  std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+  std::optional<Outcome> SolveSingular(Eigen::VectorXd* x);
+
+  BandedCholesky factor_;
+  bool singular_ = false;
+  Eigen::VectorXd step_;
+  StallGuard guard_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_SOLVERS_NEWTON_H_

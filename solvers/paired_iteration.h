@@ -1,0 +1,72 @@
+#ifndef BATTEN_SOLVERS_PAIRED_ITERATION_H_
+#define BATTEN_SOLVERS_PAIRED_ITERATION_H_
+
+#include <Eigen/SparseCore>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "solvers/stall_guard.h"
+#include "solvers/stepper.h"
+#include "splines/bspline_basis.h"
+
+namespace batten {
+
+/// Geometric iterations that move control points by residuals paired with them, as many as points:
+/// P += M R, R_j = Q - C at the parameter paired with j. A below has its rows in that order.
+class PairedIteration : public FixedPoint {
+ public:
+  std::string WhyUnsupported(const Objective& objective) const override;
+  Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) final;
+  std::vector<double> State() const override;
+  void Restore(const std::vector<double>& state) override;
+
+ protected:
+  /// Set-up on the clock, after pairing; may note what it found.
+  virtual std::optional<Outcome> Prepare() { return std::nullopt; }
+  /// R, n x d, becomes the moves M R.
+  virtual void TurnIntoMoves(Points* residuals) const = 0;
+  /// What of TurnIntoMoves is linear, for the spectral radius of I - M A.
+  virtual void TurnIntoMovesLinearly(Points* residuals) const { TurnIntoMoves(residuals); }
+  /// How the note of the spectral radius names the iteration matrix.
+  virtual std::string MatrixName() const = 0;
+
+  std::optional<Outcome> Inspect(const Eigen::VectorXd& x, const Eigen::VectorXd& g_of_x) override;
+
+  /// A, n x n.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> Collocation() const;
+
+ private:
+  std::optional<Outcome> DoStart(Eigen::VectorXd* x) final;
+  double SpectralRadius() const;
+  /// Residuals in row order, put where their control points are.
+  void Pair(const Points& by_row, Points* by_control_point) const;
+
+  std::vector<int> control_point_of_row_;
+  Points residuals_;
+  Points moves_;
+  StallGuard guard_;
+};
+
+/// Pairs data points with control points: in the order of the parameters, and of the Greville
+/// abscissae; on closed curves with the rotation that brings them closest. result[row] = j; rows
+/// are numbered in the order of their parameters' spans.
+std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
+                                       const std::vector<double>& parameters_by_row);
+
+/// Why `objective` is not one interpolation term without weights, constraints or bounds, whose
+/// residuals are distances that can be given to control points; empty if it is.
+std::string WhyNotPlainInterpolation(const Objective& objective, const std::string& solver_name);
+
+/// Parameters in the order of the rows.
+std::vector<double> ParametersByRow(const Problem& problem);
+
+/// Growth of v -> matrix v per application: the spectral radius by the eigenvalues of the dense
+/// matrix up to 300 points, beyond by a power iteration, whose growth is a lower estimate.
+/// `apply` is linear and alike for all coordinates.
+double SpectralRadiusOf(const std::function<Points(const Points&)>& apply, int num_points,
+                        std::uint64_t seed);
+
+}  // namespace batten
+
+#endif  // BATTEN_SOLVERS_PAIRED_ITERATION_H_

@@ -1,0 +1,92 @@
+#include "solvers/preconditioned_pia.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <map>
+
+namespace batten {
+namespace {
+
+using SparseRowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// Columns j - q .. j + q, modulo n, each once.
+std::vector<int> BandColumns(int j, int q, int n) {
+  std::vector<int> columns;
+  if (2 * q + 1 >= n) {
+    for (int k = 0; k < n; ++k) columns.push_back(k);
+  } else {
+    for (int k = j - q; k <= j + q; ++k) columns.push_back((k + n) % n);
+  }
+  return columns;
+}
+
+/// The row m with entries in `columns` for which |e_j' - m A| is least, and that distance as a sum
+/// of absolute values.
+Eigen::VectorXd InverseRow(const SparseRowMajor& a, int j, const std::vector<int>& columns,
+                           double* distance) {
+  std::map<int, int> equation_of;  // columns of A that the rows touch
+  equation_of.emplace(j, 0);
+  for (const int row : columns) {
+    for (SparseRowMajor::InnerIterator entry(a, row); entry; ++entry) {
+      equation_of.emplace(static_cast<int>(entry.col()), static_cast<int>(equation_of.size()));
+    }
+  }
+  Eigen::MatrixXd transposed =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equation_of.size()),
+                            static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    for (SparseRowMajor::InnerIterator entry(a, columns[k]); entry; ++entry) {
+      transposed(equation_of[static_cast<int>(entry.col())], static_cast<Eigen::Index>(k)) =
+          entry.value();
+    }
+  }
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(transposed.rows(), 0);
+  Eigen::VectorXd row = transposed.colPivHouseholderQr().solve(unit);
+  *distance = (unit - transposed * row).lpNorm<1>();
+  return row;
+}
+
+}  // namespace
+
+SolverInfo PreconditionedPiaSolver::ClassInfo() {
+  SolverInfo info;
+  info.name = "preconditioned_pia";
+  info.summary = "geometric iteration with a banded approximate inverse of A";
+  info.source =
+      "Liu, Han & Li, Mathematics 8:1503, 2020; Grote & Huckle, SIAM J. Sci. Comput. 18, 1997";
+  info.needs = {"compiled rows", "only the interpolation term without weights",
+                "as many control points as points"};
+  info.native_rule = NativeRule::kStep;
+  info.options = {OptionInfo::Integer("half_width", 3, 0, 50,
+                                      "entries of the inverse on each side of its diagonal")};
+  return info;
+}
+
+PreconditionedPiaSolver::PreconditionedPiaSolver(const OptionValues& options)
+    : half_width_(options.Integer("half_width")) {}
+
+std::optional<Outcome> PreconditionedPiaSolver::Prepare() {
+  const SparseRowMajor a = Collocation();
+  const auto n = static_cast<int>(a.rows());
+  std::vector<Eigen::Triplet<double>> entries;
+  double norm = 0.0;
+  for (int j = 0; j < n; ++j) {
+    const std::vector<int> columns = BandColumns(j, half_width_, n);
+    double distance = 0.0;
+    const Eigen::VectorXd row = InverseRow(a, j, columns, &distance);
+    norm = std::max(norm, distance);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      entries.emplace_back(j, columns[k], row[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  inverse_.resize(n, n);
+  inverse_.setFromTriplets(entries.begin(), entries.end());
+  context()->Note("largest row sum of |I - M^-1 A|", NumberText(norm));
+  return std::nullopt;
+}
+
+void PreconditionedPiaSolver::TurnIntoMoves(Points* residuals) const {
+  *residuals = (inverse_ * *residuals).eval();
+}
+
+}  // namespace batten
