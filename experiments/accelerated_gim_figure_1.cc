@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kNumPoints = 9;
 // Ours: the paper does not print its nine points. About 10 wide, as the outlines are.
-constexpr double kPoints[kNumPoints][2] = {{4.1, 0.3}, {5.0, 3.2},   {2.6, 4.4},
-                                           {0.4, 2.7}, {-1.9, 4.0},  {-4.8, 1.9},
+constexpr double kPoints[kNumPoints][2] = {{4.1, 0.3},   {5.0, 3.2},   {2.6, 4.4},
+                                           {0.4, 2.7},   {-1.9, 4.0},  {-4.8, 1.9},
                                            {-3.6, -1.6}, {-0.7, -2.9}, {2.2, -2.1}};
 constexpr double kPublishedGim = 134.0;
 constexpr double kPublishedLbfgs = 8.0;
@@ -86,14 +86,14 @@ Judgement JudgeCounts(const ExperimentTables& tables) {
   const double count = counts[nearest];
   const double fast = lbfgs.Number(nearest, "iterations");
   Judgement judgement;
-  judgement.because =
-      "GIM takes " + NumberText(*std::min_element(counts.begin(), counts.end())) + " to " +
-      NumberText(*std::max_element(counts.begin(), counts.end())) +
-      " iterations for offsets from 0 to 0.5; nearest to 134 is " + NumberText(count) +
-      " at offset " + gim.Text(nearest, "offset") + ", where L-BFGS takes " + NumberText(fast);
+  judgement.because = "GIM takes " + NumberText(*std::min_element(counts.begin(), counts.end())) +
+                      " to " + NumberText(*std::max_element(counts.begin(), counts.end())) +
+                      " iterations for offsets from 0 to 0.5; nearest to 134 is " +
+                      NumberText(count) + " at offset " + gim.Text(nearest, "offset") +
+                      ", where L-BFGS takes " + NumberText(fast);
   const bool gim_agrees = std::abs(count - kPublishedGim) <= 0.1 * kPublishedGim;
   const bool lbfgs_agrees = fast <= 2.0 * kPublishedLbfgs && fast >= 0.5 * kPublishedLbfgs;
-  judgement.verdict = gim_agrees && lbfgs_agrees ? ClaimVerdict::kHolds
+  judgement.verdict = gim_agrees && lbfgs_agrees   ? ClaimVerdict::kHolds
                       : gim_agrees || fast < count ? ClaimVerdict::kInPart
                                                    : ClaimVerdict::kDoesNotHold;
   return judgement;
@@ -111,8 +111,11 @@ std::vector<PlotPanel> CountAgainstOffset(const ExperimentTables& tables) {
     count.series.push_back({solver, rows.Numbers("offset"), rows.Numbers("iterations"),
                             PlotSeries::Style::kLinePoints, color++});
   }
-  count.series.push_back(
-      {"the paper's 134", {0.0, 0.5}, {kPublishedGim, kPublishedGim}, PlotSeries::Style::kDashed, 7});
+  count.series.push_back({"the paper's 134",
+                          {0.0, 0.5},
+                          {kPublishedGim, kPublishedGim},
+                          PlotSeries::Style::kDashed,
+                          7});
   return {count};
 }
 

@@ -61,9 +61,8 @@ void CsvTable::Set(std::size_t row, const std::string& column, const std::string
 CsvTable CsvTable::Where(const std::string& column, const std::string& text) const {
   const std::size_t index = ColumnIndex(column);
   CsvTable result(columns_);
-  std::copy_if(
-      rows_.begin(), rows_.end(), std::back_inserter(result.rows_),
-      [&](const std::vector<std::string>& cells) { return cells[index] == text; });
+  std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(result.rows_),
+               [&](const std::vector<std::string>& cells) { return cells[index] == text; });
   return result;
 }
 

@@ -7,8 +7,8 @@
 
 namespace batten {
 
-/// A small table of text cells with named columns, as it stands in a CSV file: what the verdicts and
-/// figures of a reproduction are computed from. Cells hold no commas, quotes or line ends.
+/// A small table of text cells with named columns, as it stands in a CSV file: what the verdicts
+/// and figures of a reproduction are computed from. Cells hold no commas, quotes or line ends.
 class CsvTable {
  public:
   CsvTable() = default;

@@ -12,9 +12,9 @@
 namespace batten {
 
 std::vector<std::string> RunColumns() {
-  return {"problem",    "points",        "control_points", "mode",   "solver",
-          "status",     "iterations",    "products",       "seconds", "times_cholesky",
-          "energy",     "gradient_norm", "gap",            "rate"};
+  return {"problem",    "points",   "control_points", "mode",           "solver", "status",
+          "iterations", "products", "seconds",        "times_cholesky", "energy", "gradient_norm",
+          "gap",        "rate"};
 }
 
 std::vector<std::string> TraceColumns() {

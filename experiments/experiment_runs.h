@@ -28,8 +28,8 @@ class ProblemRuns {
   /// Median time of banded_cholesky, measured at the first call; NaN where it does not apply.
   double cholesky_seconds();
 
-  /// Runs `solver` (NAME/OPTION=VALUE) and adds a row to `table` (RunColumns()) and, if not null, its
-  /// trace to `traces` (TraceColumns()). A solver that does not apply gives a row that says so.
+  /// Runs `solver` (NAME/OPTION=VALUE) and adds a row to `table` (RunColumns()) and, if not null,
+  /// its trace to `traces` (TraceColumns()). A solver that does not apply gives a row that says so.
   RunResult Run(const std::string& solver, const RunSpec& spec, CsvTable* table,
                 CsvTable* traces = nullptr);
 
@@ -50,8 +50,8 @@ RunSpec RaceSpec(double tolerance);
 /// A problem of the catalogue. Null with one sentence in `error`.
 std::shared_ptr<const Problem> CatalogueProblem(const std::string& name, std::string* error);
 
-/// m points of a closed curve without symmetry, with noise of 1 % of its size from a fixed seed; its
-/// longest side is `size`. Uniform parameters, closed uniform cubic with n control points.
+/// m points of a closed curve without symmetry, with noise of 1 % of its size from a fixed seed;
+/// its longest side is `size`. Uniform parameters, closed uniform cubic with n control points.
 std::shared_ptr<const Problem> LoopProblem(int m, int n, double size);
 
 }  // namespace batten

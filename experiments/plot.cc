@@ -61,11 +61,10 @@ std::string PanelPlot(const PlotPanel& panel, int* num_series, std::string* data
     }
     if (block.empty()) continue;
     *data += (*num_series > 0 ? "\n\n" : "") + block;
-    plot += (plot.empty() ? "plot " : ", \\\n     ") + ("DATA index " + std::to_string(*num_series)) +
-            " using 1:2 " + StyleWords(series) +
-            (series.label.empty()
-                 ? " notitle"
-                 : " title " + GnuplotString(ShownText(series.label, kMostText)));
+    plot += (plot.empty() ? "plot " : ", \\\n     ") +
+            ("DATA index " + std::to_string(*num_series)) + " using 1:2 " + StyleWords(series) +
+            (series.label.empty() ? " notitle"
+                                  : " title " + GnuplotString(ShownText(series.label, kMostText)));
     ++*num_series;
   }
   return plot.empty() ? "plot NaN notitle\n" : plot + "\n";
@@ -92,9 +91,8 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
                                   : "set size noratio\nset offsets 0, 0, 0, 0\n";
     commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
                 Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
-    commands += panel.legend
-                    ? "set key outside below center noenhanced samplen 2 font ',9'\n"
-                    : "unset key\n";
+    commands += panel.legend ? "set key outside below center noenhanced samplen 2 font ',9'\n"
+                             : "unset key\n";
     commands += PanelPlot(panel, &num_series, &data);
   }
   commands += "unset multiplot\n";

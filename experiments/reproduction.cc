@@ -75,8 +75,8 @@ bool WriteTables(const std::string& stamp, const ReproductionSpec& spec,
 bool DrawFigures(const ReproductionSpec& spec, ExperimentResult* result, FileBatch* batch,
                  std::string* error) {
   for (const ExperimentFigure& figure : result->experiment->figures) {
-    const FigureResult drawn = DrawPlot(InFolder(spec, figure.name), figure.panels(result->tables),
-                                        figure.columns, batch);
+    const FigureResult drawn =
+        DrawPlot(InFolder(spec, figure.name), figure.panels(result->tables), figure.columns, batch);
     if (drawn.message.rfind("cannot write", 0) == 0) {
       *error = drawn.message;
       return false;
@@ -101,8 +101,8 @@ bool RunOne(const Reproduction& reproduction, const Experiment& experiment,
     if (InterruptRequested()) return true;
   }
   FileBatch batch;
-  if (!result->taken_over && !WriteTables(Stamp(reproduction, experiment, spec), spec, *result,
-                                          &batch, error)) {
+  if (!result->taken_over &&
+      !WriteTables(Stamp(reproduction, experiment, spec), spec, *result, &batch, error)) {
     return false;
   }
   if (!DrawFigures(spec, result, &batch, error) || !batch.Commit(error)) return false;

@@ -48,9 +48,9 @@ struct ExperimentRun {
 /// A list of runs whose results are tables, and what is read from them. Runs that must fail (a
 /// method outside its condition) are rows like others.
 struct Experiment {
-  std::string name;   ///< Of files and on the command line: letters, digits, `_`.
+  std::string name;  ///< Of files and on the command line: letters, digits, `_`.
   std::string title;
-  std::string text;   ///< Markdown: what is run, on what data, by what rule.
+  std::string text;  ///< Markdown: what is run, on what data, by what rule.
   /// False with one sentence in `error` where data are missing. Ends early, with what it has, once
   /// InterruptRequested().
   std::function<bool(const ExperimentRun&, ExperimentTables*, std::string* error)> run;
@@ -76,9 +76,9 @@ const Reproduction* FindReproduction(const std::string& name);
 struct ExperimentResult {
   const Experiment* experiment = nullptr;
   ExperimentTables tables;
-  std::vector<Judgement> judgements;    ///< One per claim.
-  std::vector<std::string> not_drawn;   ///< Per figure: empty, or why there is no picture.
-  bool taken_over = false;              ///< From an earlier run's CSV files.
+  std::vector<Judgement> judgements;   ///< One per claim.
+  std::vector<std::string> not_drawn;  ///< Per figure: empty, or why there is no picture.
+  bool taken_over = false;             ///< From an earlier run's CSV files.
 };
 
 struct ReproductionSpec {

@@ -39,9 +39,8 @@ std::string TableText(const CsvTable& table) {
 }
 
 std::string ClaimText(const SourceClaim& claim, const Judgement& judgement) {
-  return "> \"" + claim.quote + "\" (" + claim.place + ")\n\n**" +
-         ToString(judgement.verdict) + "**: " + judgement.because + "  \nRule: " + claim.rule +
-         "\n\n";
+  return "> \"" + claim.quote + "\" (" + claim.place + ")\n\n**" + ToString(judgement.verdict) +
+         "**: " + judgement.because + "  \nRule: " + claim.rule + "\n\n";
 }
 
 std::string Summary(const std::vector<ExperimentResult>& results) {
@@ -79,7 +78,8 @@ std::string DataAddress(const std::string& svg) {
   std::string text = "data:image/svg+xml,";
   for (const char c : svg) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x80 || byte < 0x20 || std::string("%#<>\"'&{}|\\^`").find(c) != std::string::npos) {
+    if (byte >= 0x80 || byte < 0x20 ||
+        std::string("%#<>\"'&{}|\\^`").find(c) != std::string::npos) {
       text += {'%', kHex[byte >> 4], kHex[byte & 15]};
     } else {
       text += c;
@@ -147,8 +147,8 @@ std::string ReproductionMarkdown(const Reproduction& reproduction,
 std::string SelfContainedHtml(const std::string& title, const std::string& markdown,
                               const std::string& folder) {
   std::string body;
-  md_html(markdown.data(), static_cast<MD_SIZE>(markdown.size()), &AppendTo, &body,
-          MD_FLAG_TABLES, 0);
+  md_html(markdown.data(), static_cast<MD_SIZE>(markdown.size()), &AppendTo, &body, MD_FLAG_TABLES,
+          0);
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
          "</title><style>" + kStyle + "</style></head><body>\n" + WithPicturesPutIn(body, folder) +
          "</body></html>\n";

@@ -13,8 +13,8 @@ namespace batten {
 std::string ReproductionMarkdown(const Reproduction& reproduction,
                                  const std::vector<ExperimentResult>& results);
 
-/// `markdown` as one HTML page that needs no other file: pictures named in it are read from `folder`
-/// and put in.
+/// `markdown` as one HTML page that needs no other file: pictures named in it are read from
+/// `folder` and put in.
 std::string SelfContainedHtml(const std::string& title, const std::string& markdown,
                               const std::string& folder);
 
