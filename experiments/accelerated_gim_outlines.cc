@@ -31,8 +31,8 @@ void AddCurve(const Problem& problem, const std::string& solver, const std::stri
     Eigen::VectorXd t(1);
     t[0] = basis.domain_begin() + basis.domain_length() * k / kCurveSamples;
     const Points point = curve.Sample(t);
-    curves->AddRow({problem.name(), solver, iteration, NumberText(point(0, 0)),
-                    NumberText(point(0, 1))});
+    curves->AddRow(
+        {problem.name(), solver, iteration, NumberText(point(0, 0)), NumberText(point(0, 1))});
   }
 }
 
@@ -49,15 +49,15 @@ void AddCurves(const Problem& problem, const std::string& solver, const RunResul
 void AddDataPoints(const Problem& problem, CsvTable* curves) {
   const Points& points = problem.curve_fit()->data().points;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    curves->AddRow({problem.name(), "data", "", NumberText(points(i, 0)), NumberText(points(i, 1))});
+    curves->AddRow(
+        {problem.name(), "data", "", NumberText(points(i, 0)), NumberText(points(i, 1))});
   }
 }
 
 bool RunOutlines(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
   CsvTable& runs = (*tables)[""] = CsvTable(RunColumns());
   CsvTable& traces = (*tables)["traces"] = CsvTable(TraceColumns());
-  CsvTable& curves = (*tables)["curves"] =
-      CsvTable({"problem", "solver", "iteration", "x", "y"});
+  CsvTable& curves = (*tables)["curves"] = CsvTable({"problem", "solver", "iteration", "x", "y"});
   double done = 0.0;
   for (const PublishedRow& published : kTable1) {
     if (run.progress) run.progress(done / std::size(kTable1), published.problem);
@@ -130,8 +130,9 @@ std::vector<PlotPanel> Curves(const ExperimentTables& tables) {
       int color = 5;
       for (const std::string& iteration : drawn.Distinct("iteration")) {
         const CsvTable curve = drawn.Where("iteration", iteration);
-        panel.series.push_back({"iteration " + iteration, curve.Numbers("x"), curve.Numbers("y"),
-                                PlotSeries::Style::kLine, color});
+        panel.series.push_back({iteration == "last" ? "last iteration" : "iteration " + iteration,
+                                curve.Numbers("x"), curve.Numbers("y"), PlotSeries::Style::kLine,
+                                color});
         color = color == 5 ? 2 : 1;
       }
       panels.push_back(std::move(panel));

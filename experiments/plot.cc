@@ -56,7 +56,7 @@ std::string PanelPlot(const PlotPanel& panel, int* num_series, std::string* data
     std::string block;
     for (std::size_t k = 0; k < series.x.size(); ++k) {
       if (IsShown(panel, series.x[k], series.y[k])) {
-        block += GnuplotNumbers({series.x[k], series.y[k]}) + "\n";
+        block += GnuplotNumbers({series.x[k], series.y[k]});
       }
     }
     if (block.empty()) continue;
@@ -81,18 +81,21 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
   std::string data;
   std::string commands = "set multiplot layout " + std::to_string(rows) + "," +
                          std::to_string(std::min(columns, count)) +
-                         "\nset border 3 linewidth 0.8\nset tics nomirror out scale 0.6\n"
-                         "set grid linewidth 0.5 linecolor rgb '#dddddd'\n";
+                         "\nset grid linewidth 0.5 linecolor rgb '#dddddd'\n";
   int num_series = 0;
   for (const PlotPanel& panel : panels) {
     commands += "unset logscale\nset format '%g'\n";
-    commands += panel.equal_scale ? "set size ratio -1\nset offsets graph 0.05, graph 0.05, "
-                                    "graph 0.05, graph 0.05\n"
-                                  : "set size noratio\nset offsets 0, 0, 0, 0\n";
+    // A picture of a curve needs no numbers; a graph needs room for its axis and its legend.
+    commands += panel.equal_scale
+                    ? "set size ratio -1\nunset border\nunset tics\nset offsets graph 0.05, graph "
+                      "0.05, graph 0.05, graph 0.05\nset margins 1, 1, 3, 2.5\n"
+                    : "set size noratio\nset border 3 linewidth 0.8\nset tics nomirror out scale "
+                      "0.6 font ',10'\nset offsets 0, 0, 0, 0\nset margins 10, 3, 5.5, 2.5\n";
     commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
                 Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
-    commands += panel.legend ? "set key outside below center noenhanced samplen 2 font ',9'\n"
-                             : "unset key\n";
+    commands += panel.legend
+                    ? "set key bottom center outside horizontal noenhanced samplen 2 font ',10'\n"
+                    : "unset key\n";
     commands += PanelPlot(panel, &num_series, &data);
   }
   commands += "unset multiplot\n";
