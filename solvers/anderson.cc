@@ -30,7 +30,8 @@ SolverInfo AndersonSolver::ClassInfo() {
   info.native_rule = NativeRule::kStep;
   info.wraps_solver = true;
   info.usual_base = "lspia";
-  info.options = {OptionInfo::Integer("window", 5, 1, 50, "number of past steps that are combined")};
+  info.options = {
+      OptionInfo::Integer("window", 5, 1, 50, "number of past steps that are combined")};
   return info;
 }
 
@@ -108,9 +109,8 @@ Status AndersonSolver::TryCandidate(const Eigen::VectorXd& x, bool* rises) {
   const Status status = Evaluate(candidate_, &next_energy_, &next_gradient_);
   if (status != Status::kOk) return status;
   // Of a quadratic the difference of E without cancellation: the mean slope along the step.
-  *rises = objective()->is_quadratic()
-               ? !((gradient_ + next_gradient_).dot(candidate_ - x) <= 0.0)
-               : !(next_energy_ <= energy_);
+  *rises = objective()->is_quadratic() ? !((gradient_ + next_gradient_).dot(candidate_ - x) <= 0.0)
+                                       : !(next_energy_ <= energy_);
   return status;
 }
 

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "problems/fit_problem.h"
+#include "problems/data_shortage.h"
 #include "splines/banded_qr.h"
 #include "splines/nearest_solution.h"
-#include "splines/schoenberg_whitney.h"
 
 namespace batten {
 
@@ -28,19 +27,8 @@ std::string DigitsWarning(const Points& control_points) {
 std::string ShortageText(const Problem& problem) {
   const CurveFit* fit = problem.curve_fit();
   if (fit == nullptr) return "";
-  std::vector<double> parameters;
-  for (Eigen::Index i = 0; i < fit->parameters().size(); ++i) {
-    const bool counts = !fit->data().weights.has_value() || (*fit->data().weights)[i] > 0.0;
-    if (counts) parameters.push_back(fit->parameters()[i]);
-  }
-  const DataShortage shortage = LargestDataShortage(fit->basis(), std::move(parameters));
-  if (shortage.num_control_points == 0) return "";
-  const int first = shortage.first_control_point;
-  const int n = fit->basis().num_control_points();
-  return "fail: control points " + std::to_string(first) + " to " +
-         std::to_string((first + shortage.num_control_points - 1) % n) + " have " +
-         std::to_string(shortage.num_parameters) + " distinct parameters for " +
-         std::to_string(shortage.num_control_points);
+  const std::string shortage = DataShortageText(*fit);
+  return shortage.empty() ? "" : "fail: " + shortage;
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 
 namespace batten {
 
-/// Extended PIA: each data point belongs to the control point whose basis function is largest there,
-/// which moves by the weighted mean of its group's residuals. Its limit is not the least-squares
-/// curve. docs/solvers/extended_pia.md.
+/// Extended PIA: each data point belongs to the control point whose basis function is largest
+/// there, which moves by the weighted mean of its group's residuals. Its limit is not the
+/// least-squares curve. docs/solvers/extended_pia.md.
 class ExtendedPiaSolver final : public FixedPoint {
  public:
   static SolverInfo ClassInfo();

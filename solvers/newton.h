@@ -7,8 +7,8 @@
 
 namespace batten {
 
-/// Newton's method: P += N^-1 A'(Q - A P). The Hessian 2 N of a fit with fixed parameters is banded,
-/// its factor too. docs/solvers/newton.md.
+/// Newton's method: P += N^-1 A'(Q - A P). The Hessian 2 N of a fit with fixed parameters is
+/// banded, its factor too. docs/solvers/newton.md.
 class NewtonSolver final : public Stepper {
  public:
   static SolverInfo ClassInfo();

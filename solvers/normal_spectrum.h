@@ -25,8 +25,9 @@ Status EstimateNormalSpectrum(CurveView* view, std::uint64_t seed, NormalSpectru
 /// The same of any such matrix, uncounted: for what only a report wants.
 NormalSpectrum ReportSpectrum(const NormalBand& band, std::uint64_t seed);
 
-/// diag(N)^(-1/2) N diag(N)^(-1/2), which has the eigenvalues of diag(N)^-1 N; rows of control points
-/// without data are zero. Its row sums bound them (Gershgorin) by 2 w - 1 entries of at most 1.
+/// diag(N)^(-1/2) N diag(N)^(-1/2), which has the eigenvalues of diag(N)^-1 N; rows of control
+/// points without data are zero. Its row sums bound them (Gershgorin) by 2 w - 1 entries of at
+/// most 1.
 NormalBand ScaledToUnitDiagonal(const NormalBand& band);
 
 }  // namespace batten

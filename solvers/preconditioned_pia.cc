@@ -31,9 +31,8 @@ Eigen::VectorXd InverseRow(const SparseRowMajor& a, int j, const std::vector<int
       equation_of.emplace(static_cast<int>(entry.col()), static_cast<int>(equation_of.size()));
     }
   }
-  Eigen::MatrixXd transposed =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equation_of.size()),
-                            static_cast<Eigen::Index>(columns.size()));
+  Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equation_of.size()),
+                                                     static_cast<Eigen::Index>(columns.size()));
   for (std::size_t k = 0; k < columns.size(); ++k) {
     for (SparseRowMajor::InnerIterator entry(a, columns[k]); entry; ++entry) {
       transposed(equation_of[static_cast<int>(entry.col())], static_cast<Eigen::Index>(k)) =

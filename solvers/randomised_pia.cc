@@ -84,7 +84,8 @@ void RandomisedPiaSolver::MoveBlock(int block, Eigen::VectorXd* x) {
   const int end = std::min(begin + block_size_, view.num_points());
   residual_.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(d));
   for (int j = begin; j < end; ++j) {
-    sweep_->RowResidual(j, x->data(), residual_.data() + static_cast<std::ptrdiff_t>(j - begin) * d);
+    sweep_->RowResidual(j, x->data(),
+                        residual_.data() + static_cast<std::ptrdiff_t>(j - begin) * d);
   }
   double* const points = x->data() + static_cast<std::ptrdiff_t>(begin) * d;
   for (std::size_t k = 0; k < residual_.size(); ++k) {
@@ -100,8 +101,7 @@ std::optional<Outcome> RandomisedPiaSolver::CheckProgress(const Eigen::VectorXd&
   Eigen::VectorXd residual;
   const Status status = objective()->curve_view()->NormalResidual(x, &residual);
   if (status != Status::kOk) return Ended(status);
-  const bool falls =
-      earlier_.size() == 0 || (residual + earlier_residual_).dot(x - earlier_) > 0.0;
+  const bool falls = earlier_.size() == 0 || (residual + earlier_residual_).dot(x - earlier_) > 0.0;
   if (!falls) {
     return Outcome{StopReason::kStalled, "E has not fallen in " + std::to_string(kPatience) +
                                              " iterations: the rest is rounding"};

@@ -8,8 +8,8 @@
 
 namespace batten {
 
-/// Randomised block descent: P_U += A_U'(Q - A P) / mu_U for one block U of control points after the
-/// other, drawn with a probability in proportion to ||A_U||^2. docs/solvers/randomised_pia.md.
+/// Randomised block descent: P_U += A_U'(Q - A P) / mu_U for one block U of control points after
+/// the other, drawn with a probability in proportion to ||A_U||^2. docs/solvers/randomised_pia.md.
 class RandomisedPiaSolver final : public Stepper {
  public:
   static SolverInfo ClassInfo();

@@ -12,8 +12,7 @@ std::optional<Outcome> SpectralStepper::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
   iteration_ = 0;
   NormalSpectrum spectrum;
-  Status status =
-      EstimateNormalSpectrum(objective()->curve_view(), context()->seed(), &spectrum);
+  Status status = EstimateNormalSpectrum(objective()->curve_view(), context()->seed(), &spectrum);
   if (status != Status::kOk) return Ended(status);
   if (spectrum.largest == 0.0) {
     return Outcome{StopReason::kSolved, "no data point touches a control point"};

@@ -82,12 +82,7 @@ int ComparisonSession::Run(CommandOutput* output) {
   for (size_t i = 0; i < contests_.size(); ++i) {
     ComparisonResult result;
     if (!RunOrTakeOver(i, &progress, &result, &output->error)) return kBadInput;
-    if (result.interrupted) {
-      output->error = "interrupted after " + std::to_string(i) + " of " +
-                      std::to_string(contests_.size()) + " problems" +
-                      (writes && i > 0 ? "; go on with --resume" : "");
-      return kInterruptedStatus;
-    }
+    if (result.interrupted) return EndEarly(i, output);
     Add(i, std::move(result));
   }
   if (writes && !WriteTables(&output->error)) return kBadInput;
@@ -95,6 +90,18 @@ int ComparisonSession::Run(CommandOutput* output) {
   for (const std::string& note : notes_) output->results += note + "\n";
   if (writes) output->results += FileList();
   return Judge(output);
+}
+
+/// The tables of what is finished: older ones in the folder would show other rows than cells.jsonl.
+int ComparisonSession::EndEarly(size_t num_finished, CommandOutput* output) {
+  const bool has_tables = !files_.folder.empty() && num_finished > 0;
+  all_.interrupted = true;
+  if (has_tables && !WriteTables(&output->error)) return kInterruptedStatus;
+  if (num_finished > 0) output->results = ComparisonText(all_);
+  output->error = "interrupted after " + std::to_string(num_finished) + " of " +
+                  std::to_string(contests_.size()) + " problems" +
+                  (has_tables ? "; go on with --resume" : "");
+  return kInterruptedStatus;
 }
 
 bool ComparisonSession::RunOrTakeOver(size_t index, Progress* progress, ComparisonResult* result,
@@ -111,6 +118,8 @@ bool ComparisonSession::WriteProblem(size_t index, const ComparisonResult& resul
                                      std::string* error) {
   const CatalogueEntry& entry = contests_[index].entry;
   FileBatch batch;
+  // Until all is done the tables of an earlier run, which hold other rows, are gone.
+  for (const std::string& file : TableFiles()) batch.Remove(file);
   if (files_.figures) {
     if (!DrawFigures(result, &batch, error)) return false;
   } else {

@@ -43,6 +43,7 @@ class ComparisonSession {
   std::string InFolder(const std::string& name) const;
   std::vector<std::string> TableFiles() const;
   std::vector<std::string> FigureFiles(const std::string& problem) const;
+  int EndEarly(size_t num_finished, CommandOutput* output);
   bool RunOrTakeOver(size_t index, Progress* progress, ComparisonResult* result,
                      std::string* error);
   bool RunOne(size_t index, Progress* progress, ComparisonResult* result, std::string* error);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "experiments/short_number.h"
+#include "problems/data_shortage.h"
 
 namespace batten {
 namespace {
@@ -63,6 +64,10 @@ std::string EnergyLines(const Problem& problem, const RunResult& run) {
     const BlockFamily& family = *terms[k].family;
     if (family.Evaluate(run.x, 0, family.size(), &energy, nullptr) != Status::kOk) energy = NAN;
     text += Line("", terms[k].name + " " + Short(energy * problem.units().energy));
+  }
+  if (problem.curve_fit() != nullptr && problem.terms().size() == 1) {
+    const std::string shortage = DataShortageText(*problem.curve_fit());
+    if (!shortage.empty()) text += Line("", "not the only minimum: " + shortage);
   }
   return text + Line("gradient |g|", Short(run.gradient_norm) + " (start " +
                                          Short(run.start_gradient_norm) + ", rounding floor " +

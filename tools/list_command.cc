@@ -58,6 +58,8 @@ Json SolversJson() {
                     {"source", info.source},
                     {"needs", info.needs},
                     {"supports", info.supports},
+                    {"limit", info.limit.empty() ? Json(nullptr) : Json(info.limit)},
+                    {"usual_base", info.usual_base.empty() ? Json(nullptr) : Json(info.usual_base)},
                     {"native_rule", ToString(info.native_rule)},
                     {"wraps_solver", info.wraps_solver},
                     {"options", OptionsJson(info.options)}});
@@ -100,7 +102,7 @@ Json ProblemsJson(const std::vector<CatalogueEntry>& entries) {
   return list;
 }
 
-constexpr size_t kIndent = 18;
+constexpr size_t kIndent = 21;
 
 std::string Entry(const std::string& name, const std::string& text, size_t indent = kIndent) {
   std::string first = "  " + name + " ";

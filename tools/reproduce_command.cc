@@ -1,11 +1,11 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <set>
 
 #include "experiments/atomic_file.h"
 #include "experiments/reproduction.h"
 #include "tools/command.h"
+#include "tools/interrupts.h"
 #include "tools/output_files.h"
 #include "tools/progress.h"
 #include "tools/run_flags.h"
@@ -62,8 +62,8 @@ std::string VerdictLines(const ReproductionResult& result) {
     text += experiment.experiment->title + (experiment.taken_over ? " (taken over)" : "") + "\n";
     for (std::size_t k = 0; k < experiment.judgements.size(); ++k) {
       const Judgement& judgement = experiment.judgements[k];
-      text += "  \"" + experiment.experiment->claims[k].quote + "\": " +
-              ToString(judgement.verdict) + "\n    " + judgement.because + "\n";
+      text += "  \"" + experiment.experiment->claims[k].quote +
+              "\": " + ToString(judgement.verdict) + "\n    " + judgement.because + "\n";
     }
   }
   return text;
@@ -89,6 +89,7 @@ int RunReproduce(const std::vector<std::string>& positional, CommandOutput* outp
   if (!Prepare(*reproduction, spec, error)) return kBadInput;
   ReproductionResult result;
   {
+    const InterruptibleRun interruptible;
     Progress progress(FLAGS_quiet);
     spec.run.progress = [&progress](double fraction, const std::string& text) {
       progress.Show(fraction, text);
@@ -119,18 +120,20 @@ Command ReproduceCommand() {
   command.summary = "runs a paper's experiments again and judges its claims";
   command.details = {
       "Writes OUT/NAME.html (one file, pictures put in), OUT/NAME.md, and for each experiment its "
-      "CSV files and figures: .svg with the gnuplot script (.gp) and the data (.dat) behind it. Each "
+      "CSV files and figures: .svg with the gnuplot script (.gp) and the data (.dat) behind it. "
+      "Each "
       "verdict is computed from the CSV by the rule stated beside it. Runs that an experiment "
       "expects to fail are no failures.",
       "Reproductions: accelerated-gim."};
   command.examples = {"batten reproduce accelerated-gim --out=out/accelerated-gim",
                       "batten reproduce accelerated-gim --only=figure_1 --repetitions=1"};
-  command.flags = {TextFlag("only", "LIST", "names of experiments, separated by commas"),
-                   NumberFlag("repetitions", "N", 1.0, 1000.0),
-                   TextFlag("out", "FOLDER", "a folder",
-                            "Folder for page, figures and CSV files, created if missing. Not given: "
-                            "out/NAME."),
-                   SwitchFlag("resume"), SwitchFlag("quiet")};
+  command.flags = {
+      TextFlag("only", "LIST", "names of experiments, separated by commas"),
+      NumberFlag("repetitions", "N", 1.0, 1000.0),
+      TextFlag("out", "FOLDER", "a folder",
+               "Folder for page, figures and CSV files, created if missing. Not given: "
+               "out/NAME."),
+      SwitchFlag("resume"), SwitchFlag("quiet")};
   command.run = &RunReproduce;
   return command;
 }
