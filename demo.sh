@@ -8,7 +8,7 @@ cmake --preset release -DBATTEN_BUILD_TESTS=OFF
 cmake --build --preset release
 
 mkdir -p out/demo
-build/batten compare --problems=rhino --solvers=all --out=out/demo
+build/batten compare --problems=rhino,rhino_interpolation --solvers=all --out=out/demo
 build/batten fit data/animals/rhino_100.csv --closed --control_points=80 --solver=lbfgs \
   --out=out/demo/fit.json --trace=out/demo/trace.csv --figure=out/demo/rhino.svg
 

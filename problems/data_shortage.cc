@@ -15,10 +15,9 @@ std::string DataShortageText(const CurveFit& fit) {
   if (count == 0) return "";
   const int first = shortage.first_control_point;
   const int n = fit.basis().num_control_points();
-  const std::string who = count == 1
-                              ? "control point " + std::to_string(first) + " has "
-                              : "control points " + std::to_string(first) + " to " +
-                                    std::to_string((first + count - 1) % n) + " have ";
+  const std::string who = count == 1 ? "control point " + std::to_string(first) + " has "
+                                     : "control points " + std::to_string(first) + " to " +
+                                           std::to_string((first + count - 1) % n) + " have ";
   return who + std::to_string(shortage.num_parameters) +
          (shortage.num_parameters == 1 ? " distinct parameter for " : " distinct parameters for ") +
          std::to_string(count);

@@ -16,13 +16,18 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Of the data's size: what all solvers agree to in every control point.
 constexpr double kAgreement = 1e-8;
 
-/// All registered ones by name, and the other step of lspia that converges everywhere.
+/// All registered ones whose limit is the minimum, and the other steps of lspia that converge
+/// everywhere.
 std::vector<std::string> Solvers() {
   std::vector<std::string> solvers;
   for (const std::string& name : SolverRegistry::Global().Names()) {
-    if (!SolverRegistry::Global().Find(name)->wraps_solver) solvers.push_back(name);
+    const SolverInfo& info = *SolverRegistry::Global().Find(name);
+    if (!info.limit.empty()) continue;
+    solvers.push_back(info.usual_base.empty() ? name : name + ":" + info.usual_base);
   }
-  solvers.push_back("lspia/step=optimal");
+  for (const char* step : {"optimal", "cauchy", "barzilai_borwein"}) {
+    solvers.push_back(std::string("lspia/step=") + step);
+  }
   return solvers;
 }
 
@@ -216,7 +221,9 @@ TEST_P(Agreement, ChangesHardlyMoveTheNumberOfIterations) {
       const RunResult result = RunSolver(*fit.Make(), solver);
       // A tenth, and one for the first step, which the scale inside changes by up to 2.
       const int expected = IterationsToSixDigits(plain);
-      EXPECT_NEAR(IterationsToSixDigits(result), expected, 1 + expected / 10)
+      // Where control points are numbered otherwise, draws hit others.
+      const int part = solver == "randomised_pia" ? 5 : 10;
+      EXPECT_NEAR(IterationsToSixDigits(result), expected, 1 + expected / part)
           << solver << " " << change.name;
     }
   }

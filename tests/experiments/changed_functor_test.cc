@@ -54,8 +54,8 @@ struct Path {
 std::vector<Path> AllPaths() {
   std::vector<Path> paths;
   for (const std::string& name : SolverRegistry::Global().Names()) {
-    const bool wraps = SolverRegistry::Global().Find(name)->wraps_solver;
-    paths.push_back({wraps ? name + ":lspia" : name, true});
+    const std::string& base = SolverRegistry::Global().Find(name)->usual_base;
+    paths.push_back({base.empty() ? name : name + ":" + base, true});
   }
   for (const char* more : {"ceres_lbfgs/form=problem", "ceres_lbfgs/form=spans"}) {
     paths.push_back({more, true});

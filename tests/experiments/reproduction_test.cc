@@ -31,14 +31,14 @@ Experiment Squares(int* num_runs) {
          const bool nine = tables.at("").Number(2, "square") == 9.0;
          return Judgement{nine ? ClaimVerdict::kHolds : ClaimVerdict::kDoesNotHold, "it is seen"};
        }}};
-  experiment.figures = {{"squares_figure", "Squares.", 1, [](const ExperimentTables& tables) {
-                           PlotPanel panel;
-                           panel.title = "squares <&>";
-                           const CsvTable& table = tables.at("");
-                           panel.series.push_back(
-                               {"n^2", table.Numbers("n"), table.Numbers("square")});
-                           return std::vector<PlotPanel>{panel};
-                         }}};
+  experiment.figures = {
+      {"squares_figure", "Squares.", 1, [](const ExperimentTables& tables) {
+         PlotPanel panel;
+         panel.title = "squares <&>";
+         const CsvTable& table = tables.at("");
+         panel.series.push_back({"n^2", table.Numbers("n"), table.Numbers("square")});
+         return std::vector<PlotPanel>{panel};
+       }}};
   return experiment;
 }
 
@@ -123,7 +123,7 @@ TEST_F(Reproducing, RunsAgainWhatIsNotItsOwn) {
   Run();
   std::string text = Contents(folder_ / "squares.csv");
   for (const std::string& broken :
-       {"# another program\n" + text, text.substr(0, text.size() - 2), std::string("n,square\n")}) {
+       {"# another program\n" + text, text.substr(0, text.size() - 3), std::string("n,square\n")}) {
     std::ofstream(folder_ / "squares.csv") << broken;
     const int before = num_runs_;
     Run(true);

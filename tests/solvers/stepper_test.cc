@@ -35,10 +35,13 @@ class SteppedRun {
 std::vector<std::string> StepperNames() {
   std::vector<std::string> names;
   for (const std::string& name : SolverRegistry::Global().Names()) {
-    if (SolverRegistry::Global().Find(name)->wraps_solver) continue;
-    const std::unique_ptr<Solver> solver = MakeSolver(name);
-    if (dynamic_cast<Stepper*>(solver.get()) != nullptr) names.push_back(name);
+    const std::string& base = SolverRegistry::Global().Find(name)->usual_base;
+    const std::string whole = base.empty() ? name : name + ":" + base;
+    const std::unique_ptr<Solver> solver = MakeSolver(whole);
+    if (dynamic_cast<Stepper*>(solver.get()) != nullptr) names.push_back(whole);
   }
+  names.emplace_back("lspia/step=cauchy");
+  names.emplace_back("lspia/step=barzilai_borwein");
   return names;
 }
 
@@ -104,7 +107,13 @@ TEST_P(EveryStepper, RunsInLockstepWithAnyOther) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryStepper, ::testing::ValuesIn(StepperNames()),
-                         [](const auto& stepper) { return stepper.param; });
+                         [](const auto& stepper) {
+                           std::string name = stepper.param;
+                           std::replace_if(
+                               name.begin(), name.end(),
+                               [](char c) { return std::isalnum(c) == 0; }, '_');
+                           return name;
+                         });
 
 TEST(Stepper, LbfgsGoesOnFromItsStateOnCurvedObjectives) {
   for (const char* name : {"rosenbrock", "wood", "trigonometric"}) {

@@ -68,8 +68,8 @@ TEST(FitCommand, ReachesTheMinimumWithEverySolverOfTheList) {
   // As many control points as points, so that gim applies too: the curve passes through all.
   const json list = RunBatten({"list", "solvers", "--json"}).Json();
   for (const json& solver : list["solvers"]) {
-    if (solver["wraps_solver"].get<bool>()) continue;
-    const std::string name = solver["name"];
+    std::string name = solver["name"];
+    if (!solver["usual_base"].is_null()) name += ":" + solver["usual_base"].get<std::string>();
     const json fit = Fit({"--problem=rhino_interpolation", "--solver=" + name});
     EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-6) << name;
     EXPECT_EQ(fit["audit"]["verified"], true) << name;
