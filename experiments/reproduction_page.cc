@@ -15,18 +15,25 @@
 namespace batten {
 namespace {
 
+/// As the text of a table's cell.
+std::string Cell(const std::string& text) {
+  std::string cell;
+  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
+  return cell;
+}
+
 /// Numbers with many digits are shown short; the CSV has them all.
 std::string Shown(const std::string& cell) {
   double value = 0.0;
   if (cell.empty() || cell == "nan") return "-";
-  if (!ParseNumber(cell, &value)) return cell;
+  if (!ParseNumber(cell, &value)) return Cell(cell);
   const bool whole = value == std::floor(value) && std::abs(value) < 1e8;
   return whole ? cell : ShortNumber(value, 4);
 }
 
 std::string TableText(const CsvTable& table) {
   std::string text = "|";
-  for (const std::string& column : table.columns()) text += " " + column + " |";
+  for (const std::string& column : table.columns()) text += " " + Cell(column) + " |";
   text += "\n|";
   for (std::size_t k = 0; k < table.columns().size(); ++k) text += "---|";
   for (std::size_t row = 0; row < table.num_rows(); ++row) {
@@ -47,8 +54,9 @@ std::string Summary(const std::vector<ExperimentResult>& results) {
   std::string text = "| experiment | claim | verdict |\n|---|---|---|\n";
   for (const ExperimentResult& result : results) {
     for (std::size_t k = 0; k < result.judgements.size(); ++k) {
-      text += "| " + result.experiment->title + " | \"" + result.experiment->claims[k].quote +
-              "\" | " + ToString(result.judgements[k].verdict) + " |\n";
+      text += "| " + Cell(result.experiment->title) + " | \"" +
+              Cell(result.experiment->claims[k].quote) + "\" | " +
+              ToString(result.judgements[k].verdict) + " |\n";
     }
   }
   return text + "\n";

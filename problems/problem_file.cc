@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -138,7 +139,13 @@ bool ReadReference(const StrictObject& file, CatalogueEntry* entry) {
 
 bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string* error) {
   nlohmann::json json;
-  if (!ReadJsonFile(path, &json, error)) return false;
+  if (!ReadJsonFile(path, &json, error)) {
+    const std::string ending = std::filesystem::path(path).extension();
+    if (ending == ".csv" || ending == ".txt") {
+      *error += "; points are fitted with batten fit, or named in a problem file";
+    }
+    return false;
+  }
   const StrictObject file(path, "", &json, error);
   CatalogueEntry read;
   read.path = path;

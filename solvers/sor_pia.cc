@@ -11,7 +11,7 @@ SolverInfo SorPiaSolver::ClassInfo() {
   info.supports = {"linear constraints", "weights", "any rank"};
   info.native_rule = NativeRule::kStep;
   info.options = {
-      OptionInfo::Real("w", 1.5, 0.001, 1.999, "over-relaxation; converges for every 0 < w < 2")};
+      OptionInfo::Real("w", 1.3, 0.001, 1.999, "over-relaxation; converges for every 0 < w < 2")};
   return info;
 }
 

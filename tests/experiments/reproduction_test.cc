@@ -133,6 +133,13 @@ TEST_F(Reproducing, RunsAgainWhatIsNotItsOwn) {
   EXPECT_FALSE(Run(true).experiments[0].taken_over);
 }
 
+TEST_F(Reproducing, KeepsBarsInsideTheCellsOfItsTables) {
+  reproduction_.experiments[0].claims[0].quote = "|g| < 1e-10";
+  Run();
+  EXPECT_THAT(Contents(folder_ / "numbers.md"), HasSubstr("| \"\\|g\\| < 1e-10\" | holds |"));
+  EXPECT_THAT(Contents(folder_ / "numbers.html"), HasSubstr("<td>&quot;|g| &lt; 1e-10&quot;</td>"));
+}
+
 TEST(SelfContainedHtml, KeepsTheNameOfAPictureThatIsNotThere) {
   const std::string page = SelfContainedHtml("T", "![a](missing.svg)", "/nowhere");
   EXPECT_THAT(page, HasSubstr("<img src=\"missing.svg\""));
