@@ -17,7 +17,16 @@ Reproduction AcceleratedGim() {
       "rule, |g| <= 1e-10 |g(start)|. The outlines are not the paper's own, which are not public: "
       "they have its numbers of points and control points. Every verdict is computed from the CSV "
       "files beside this page by the rule stated with it.";
-  reproduction.experiments = {AcceleratedGimFigure1(), AcceleratedGimOutlines()};
+  reproduction.experiments = {AcceleratedGimFigure1(),
+                              AcceleratedGimOutlines(),
+                              AcceleratedGimThirtyIterations(),
+                              AcceleratedGimSize(),
+                              AcceleratedGimOrder(),
+                              AcceleratedGimSpectrum(),
+                              AcceleratedGimOneCall(),
+                              AcceleratedGimLargestResidual(),
+                              AcceleratedGimUnits(),
+                              AcceleratedGimWhenToIterate()};
   return reproduction;
 }
 

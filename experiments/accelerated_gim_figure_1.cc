@@ -43,11 +43,7 @@ std::shared_ptr<const Problem> NinePoints(double offset) {
 
 bool RunOffsets(const ExperimentRun& run, ExperimentTables* tables, std::string* /*error*/) {
   constexpr int kSteps = 20;
-  CsvTable runs([] {
-    std::vector<std::string> columns = RunColumns();
-    columns.insert(columns.begin(), "offset");
-    return columns;
-  }());
+  CsvTable runs(RunColumnsBehind({"offset"}));
   for (int k = 0; k <= kSteps && !InterruptRequested(); ++k) {
     const double offset = 0.5 * k / kSteps;
     if (run.progress) run.progress(static_cast<double>(k) / (kSteps + 1), "offsets");
@@ -58,11 +54,7 @@ bool RunOffsets(const ExperimentRun& run, ExperimentTables* tables, std::string*
         problem.Run(solver, spec, &rows);
       }
     }
-    for (std::size_t row = 0; row < rows.num_rows(); ++row) {
-      std::vector<std::string> cells = {NumberText(offset)};
-      for (const std::string& column : rows.columns()) cells.push_back(rows.Text(row, column));
-      runs.AddRow(std::move(cells));
-    }
+    AddRowsBehind({NumberText(offset)}, rows, &runs);
   }
   (*tables)[""] = std::move(runs);
   return true;

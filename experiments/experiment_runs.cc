@@ -17,6 +17,20 @@ std::vector<std::string> RunColumns() {
           "gap",        "rate"};
 }
 
+std::vector<std::string> RunColumnsBehind(const std::vector<std::string>& first) {
+  std::vector<std::string> columns = first;
+  for (std::string& column : RunColumns()) columns.push_back(std::move(column));
+  return columns;
+}
+
+void AddRowsBehind(const std::vector<std::string>& first, const CsvTable& rows, CsvTable* table) {
+  for (std::size_t row = 0; row < rows.num_rows(); ++row) {
+    std::vector<std::string> cells = first;
+    for (const std::string& column : rows.columns()) cells.push_back(rows.Text(row, column));
+    table->AddRow(std::move(cells));
+  }
+}
+
 std::vector<std::string> TraceColumns() {
   return {"problem", "mode", "solver", "iteration", "energy", "gradient_norm", "step_norm", "gap"};
 }

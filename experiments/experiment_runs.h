@@ -14,6 +14,10 @@ namespace batten {
 
 /// The columns that ProblemRuns::Run fills.
 std::vector<std::string> RunColumns();
+/// `first`, then RunColumns().
+std::vector<std::string> RunColumnsBehind(const std::vector<std::string>& first);
+/// Adds the rows of `rows` (RunColumns()), each behind the cells `first`, to `table`.
+void AddRowsBehind(const std::vector<std::string>& first, const CsvTable& rows, CsvTable* table);
 /// The columns of a table of traces, one row per iteration.
 std::vector<std::string> TraceColumns();
 

@@ -8,8 +8,8 @@
 namespace batten {
 namespace {
 
-constexpr int kPanelWidth = 440;
-constexpr int kPanelHeight = 330;
+constexpr int kPanelWidth = 560;
+constexpr int kPanelHeight = 320;
 constexpr std::size_t kMostText = 90;
 
 // Okabe & Ito, Color Universal Design, 2008, without the yellow.
@@ -88,14 +88,14 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
     // A picture of a curve needs no numbers; a graph needs room for its axis and its legend.
     commands += panel.equal_scale
                     ? "set size ratio -1\nunset border\nunset tics\nset offsets graph 0.05, graph "
-                      "0.05, graph 0.05, graph 0.05\nset margins 1, 1, 3, 2.5\n"
+                      "0.05, graph 0.05, graph 0.05\nset margins 1, 20, 1, 2.5\n"
                     : "set size noratio\nset border 3 linewidth 0.8\nset tics nomirror out scale "
-                      "0.6 font ',10'\nset offsets 0, 0, 0, 0\nset margins 10, 3, 5.5, 2.5\n";
+                      "0.6 font ',10'\nset offsets 0, 0, 0, 0\nset margins 10, 25, 4.5, 2.5\n";
     commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
                 Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
-    commands += panel.legend
-                    ? "set key bottom center outside horizontal noenhanced samplen 2 font ',10'\n"
-                    : "unset key\n";
+    commands += panel.legend ? "set key at graph 1.03, graph 1 left top vertical Left reverse "
+                               "noenhanced samplen 1.5 spacing 1.1 font ',9'\n"
+                             : "unset key\n";
     commands += PanelPlot(panel, &num_series, &data);
   }
   commands += "unset multiplot\n";

@@ -59,7 +59,8 @@ bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spe
   Objective objective(&problem, &control, Objective::Options{spec.compile});
   result->skipped = solver->WhyUnsupported(objective);
   if (!result->skipped.empty()) return true;
-  Eigen::VectorXd x = objective.start();
+  Eigen::VectorXd x =
+      spec.start.size() > 0 ? problem.elimination().FreeVariables(spec.start) : objective.start();
   control.Begin();
   result->outcome = solver->Minimize(&objective, &control, &x);
   control.Finish(x);

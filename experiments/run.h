@@ -33,6 +33,8 @@ struct RunSpec {
   bool compile = true;  ///< False: all evaluations through the autodiff functors.
   bool keep_trace = true;
   bool keep_iterates = false;
+  /// Warm start: all variables, scaled as inside. Empty: the problem's own start.
+  Eigen::VectorXd start;
   /// Called off the clock at iterations; may be empty.
   std::function<void(const TraceRow&)> progress;
 };

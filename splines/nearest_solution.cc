@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "splines/banded_qr.h"
@@ -175,6 +176,21 @@ BandedQr Factor(const RowSource& rows) {
   return qr;
 }
 
+/// The diagonal of R can be far from zero where A is singular: where the null vector decays towards
+/// the last columns, no pivot shows it. ||(R'R)^-1 x|| / ||x|| is at most 1 / (smallest singular
+/// value)^2 for any x, and for one without structure at least that over the root of n.
+bool HidesASmallSingularValue(const BandedQr& qr, int n) {
+  std::vector<double> x(static_cast<std::size_t>(n));
+  std::mt19937 random(1);
+  for (double& entry : x) entry = static_cast<double>(random()) * 0x1p-31 - 1.0;
+  const auto map = [&x] { return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size()); };
+  const double before = map().norm();
+  qr.SolveTransposedTriangle(1, x.data());
+  qr.SolveTriangle(1, x.data());
+  const double smallest = std::sqrt(before / map().stableNorm());
+  return !(smallest > BandedQr::kRankTolerance * qr.LargestDiagonal());
+}
+
 }  // namespace
 
 NearestSolution SolveNearest(const RowSource& rows, const Points& start) {
@@ -183,7 +199,7 @@ NearestSolution SolveNearest(const RowSource& rows, const Points& start) {
   result.control_points = start;
   const BandedQr qr = Factor(rows);
   result.diagonal_ratio = qr.DiagonalRatio();
-  if (qr.full_rank()) {
+  if (qr.full_rank() && !HidesASmallSingularValue(qr, shape.num_columns)) {
     qr.Solve(&result.control_points);
     result.rank = shape.num_columns;
     result.method = "banded QR";

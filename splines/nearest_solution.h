@@ -12,7 +12,8 @@ namespace batten {
 /// - "banded QR": A has full rank.
 /// - "minimum norm, front by front": it has not. Stretches of columns are eliminated with column
 ///   exchanges, then what separates them; pivots up to BandedQr::kRankTolerance times the largest
-///   diagonal entry of the band's R count as zero.
+///   diagonal entry of the band's R count as zero. Taken too where R has no small diagonal entry,
+///   but a solve with it shows a singular value that small.
 /// - "none, ...": rows or start are not finite; the start is returned.
 /// @warning Pivots are no singular values: where these fall gradually to the tolerance and below,
 /// A may lose a few more ranks than the pivots say, and control points then lie very far off.

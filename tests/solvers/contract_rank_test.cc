@@ -126,6 +126,31 @@ TEST(SolutionNearestToTheStart, OfManyControlPointsIsTheOneThatConjugateGradient
   EXPECT_GT(moved.norm(), 1e3 * (qr.x - cg.x).norm());
 }
 
+TEST(SolutionNearestToTheStart, IsFoundWhereNoPivotIsSmall) {
+  // 99 distinct parameters for 100 control points; the null vector alternates and decays from the
+  // one that lacks data, so that every diagonal entry of R stays above the tolerance.
+  FitSpec spec = MakeSpec(3, true, 100);
+  DataSet data = WithoutWeights(MakeNoisyLoop(100, 2, 9));
+  data.parameters = Eigen::VectorXd(100);
+  for (int i = 0; i < 100; ++i) (*data.parameters)[i] = (i == 11 ? 10 : i) / 100.0;
+  spec.parameters.reset();
+  spec.domain = {0.0, 1.0};
+  const auto problem = MakeFit(data, spec);
+  const SolverTrial cg(*problem, "cg", {5000});
+  EXPECT_TRUE(IsSuccess(cg.outcome.reason));
+  const DenseFit dense(*problem);
+  ASSERT_EQ(dense.rank, 99);
+  for (const char* solver : {"banded_qr", "banded_cholesky", "newton"}) {
+    const SolverTrial direct(*problem, solver);
+    EXPECT_THAT(direct.outcome.message, HasSubstr("minimum norm"));
+    const double gradients =
+        direct.context.gradient_norms().back() + cg.context.gradient_norms().back();
+    EXPECT_LT((direct.x - cg.x).norm(),
+              dense.DistanceFor(gradients) + 256 * kEps * dense.condition() * dense.condition())
+        << solver;
+  }
+}
+
 TEST(SolutionNearestToTheStart, OfARealCoastWithUnevenPointsHasTheLeastEnergy) {
   // Spans with none, one and many of 3,697 points side by side, points next to knots: singular
   // values at every size down to the tolerance. The reference goes another way: cg, never above it.
