@@ -124,6 +124,18 @@ TEST(PublishedLspia, StopsWhereThePublishedProgramsDo) {
   }
 }
 
+TEST(PublishedLspia, BarzilaiBorweinEndsAtThePublishedGradient) {
+  // results/table8_ablation/table8_ablation.csv, "long endpoint alpha^(1)" on the second curve,
+  // which halved no step. The first step there is one over the largest column sum, too, and no
+  // eigenvalue is estimated: what differs is rounding, which four steps of up to 22 / l1 enlarge.
+  constexpr double kRounding = 1e-9;
+  const PublishedCase published(1);
+  const PublishedRun run(published, "lspia/step=barzilai_borwein");
+  EXPECT_EQ(run.iterations(), 4);
+  const std::vector<double>& norms = run.context.gradient_norms();
+  EXPECT_NEAR(std::pow(norms.back() / norms.front(), 2) / 8.37507130253156e-07, 1.0, kRounding);
+}
+
 TEST(PublishedLspia, SeesThePublishedConditionOfTheNormalMatrix) {
   for (int number = 0; number < kCases; ++number) {
     const PublishedCase published(number);
