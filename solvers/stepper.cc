@@ -10,6 +10,14 @@ std::optional<Outcome> Stepper::Start(Objective* objective, RunContext* context,
   return DoStart(x);
 }
 
+std::optional<Outcome> Stepper::Step(Eigen::VectorXd* x) {
+  std::optional<Outcome> outcome = DoStep(x);
+  if (outcome && outcome->reason == StopReason::kStalled && !warning_.empty()) {
+    outcome->message += "; " + warning_;
+  }
+  return outcome;
+}
+
 Outcome Stepper::Ended(Status status) const {
   if (status == Status::kStop) {
     const StopReason reason = context_->stop_reason();

@@ -14,7 +14,7 @@ class Stepper : public Solver {
   /// Set-up at *x, which it may move. An outcome ends the run here.
   std::optional<Outcome> Start(Objective* objective, RunContext* context, Eigen::VectorXd* x);
   /// One iteration from *x.
-  std::optional<Outcome> Step(Eigen::VectorXd* x) { return DoStep(x); }
+  std::optional<Outcome> Step(Eigen::VectorXd* x);
   /// What the next Step needs beside x, as numbers; set back by Restore after a Start at the same
   /// x.
   virtual std::vector<double> State() const { return {}; }

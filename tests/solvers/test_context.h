@@ -19,6 +19,9 @@ struct TestContextOptions {
   /// Energies after which the monitor says no.
   int max_energies = std::numeric_limits<int>::max();
   int threads = 1;
+  std::uint64_t seed = 20240501;
+  /// Diverged at |g| > this * |g| of iteration 0.
+  double divergence = std::numeric_limits<double>::infinity();
 };
 
 /// Run control reduced to what a solver's test needs: the monitor of the solver's objective and its
@@ -60,7 +63,7 @@ class TestContext final : public RunContext, public EvaluationMonitor {
   StopReason stop_reason() const override { return stop_reason_; }
   void Note(const std::string& name, const std::string& value) override { notes_[name] = value; }
   void OffTheClock(const std::function<void()>& work) override { work(); }
-  std::uint64_t seed() const override { return 20240501; }
+  std::uint64_t seed() const override { return options_.seed; }
   int threads() const override { return options_.threads; }
 
   bool stopped() const { return stop_reason_ != StopReason::kNotRun; }
@@ -89,6 +92,7 @@ class TestContext final : public RunContext, public EvaluationMonitor {
   StopReason Judge(const Eigen::VectorXd& x) const {
     const double norm = gradient_norms_.back();
     if (!std::isfinite(norm)) return StopReason::kNumericalFailure;
+    if (norm > options_.divergence * gradient_norms_.front()) return StopReason::kDiverged;
     if (norm <= options_.gradient_tolerance * gradient_norms_.front()) {
       return StopReason::kGradientSmall;
     }
