@@ -81,6 +81,27 @@ BATTEN_STEP_BENCHMARK(lspia, "lspia");
 BATTEN_STEP_BENCHMARK(cg, "cg");
 BATTEN_STEP_BENCHMARK(lbfgs, "lbfgs/memory=10");
 #undef BATTEN_STEP_BENCHMARK
+// Beside lspia with as many points: their work per iteration is one pass over the band, too.
+#define BATTEN_FAMILY_BENCHMARK(solver)                \
+  BENCHMARK_CAPTURE(StepOnNormalBand, solver, #solver) \
+      ->Arg(kControlPoints)                            \
+      ->UseManualTime()                                \
+      ->Unit(benchmark::kMicrosecond)
+BATTEN_FAMILY_BENCHMARK(jacobi_pia);
+BATTEN_FAMILY_BENCHMARK(gauss_seidel_pia);
+BATTEN_FAMILY_BENCHMARK(sor_pia);
+BATTEN_FAMILY_BENCHMARK(polyak_lspia);
+BATTEN_FAMILY_BENCHMARK(nesterov_lspia);
+BATTEN_FAMILY_BENCHMARK(chebyshev_lspia);
+BATTEN_FAMILY_BENCHMARK(mlspia);
+#undef BATTEN_FAMILY_BENCHMARK
+// On the rows, of which it needs as many as control points. Its set-up takes much longer than the
+// iterations that are timed: once.
+BENCHMARK_CAPTURE(StepOnNormalBand, preconditioned_pia, "preconditioned_pia")
+    ->Arg(kControlPoints)
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond);
 
 RaceFunction* FunctionNamed(const std::string& name) {
   static RaceFunction* const rosenbrock = new RosenbrockFunction();

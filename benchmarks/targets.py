@@ -40,6 +40,10 @@ def direct_fits(solver, form, than, peer, target=0.0):
                                 ('solver alone', 'FromProblem'))]
 
 
+# Iterations that cost about one of lspia, and how many times that they may.
+FAMILY = {'jacobi_pia': 1.5, 'gauss_seidel_pia': 1.5, 'sor_pia': 1.5, 'polyak_lspia': 1.5,
+          'nesterov_lspia': 1.5, 'chebyshev_lspia': 1.5, 'mlspia': 2.5, 'preconditioned_pia': 2.5}
+
 TARGETS = [
     *direct_fits('banded_cholesky', 'open', 'SciPy `make_lsq_spline`', LSQ, 10),
     *direct_fits('banded_cholesky', 'closed', 'SciPy periodic `splprep`', SPLPREP, 100),
@@ -51,6 +55,10 @@ TARGETS = [
           f'StepOnNormalBand/{solver}/1000000:per_iteration',
           f'StepOnNormalBand/{solver}/10000:per_iteration', 1.1)
       for solver in ('lspia', 'cg', 'lbfgs')],
+    *[Row(f'iteration of `{solver}` over `lspia`, 1e4 points',
+          f'StepOnNormalBand/{solver}/10000:per_iteration',
+          'StepOnNormalBand/lspia/10000:per_iteration', target)
+      for solver, target in FAMILY.items()],
     Row('`lbfgs` over libLBFGS per iteration, normal band', 'OurLbfgs/normal_band:per_iteration',
         'LibLbfgs/normal_band:per_iteration', 1.3),
     Row('`lbfgs` over libLBFGS per iteration, extended Rosenbrock, 2e4 variables',
@@ -86,6 +94,9 @@ TIMES = [
        f'StepOnNormalBand/{solver}/{points}:per_iteration', 'us')
       for solver in ('lspia', 'cg', 'lbfgs')
       for text, points in (('1e4', 10000), ('1e6', 1000000))],
+    *[(f'iteration of `{solver}`, 1e4 points', f'StepOnNormalBand/{solver}/10000:per_iteration',
+       'us')
+      for solver in FAMILY],
     *[(f'{solver}, {what}, {text}', f'{group}/{function}:{counter}', 'us')
       for text, function in (('normal band', 'normal_band'), ('Rosenbrock', 'rosenbrock'))
       for solver, group in (('`lbfgs`', 'OurLbfgs'), ('libLBFGS', 'LibLbfgs'))
