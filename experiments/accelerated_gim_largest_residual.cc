@@ -16,7 +16,9 @@ constexpr const char* kLawson = "lawson";
 struct Residuals {
   Eigen::VectorXd lengths;  // |Q_i - C(t_i)|
   double largest() const { return lengths.maxCoeff(); }
-  double rms() const { return std::sqrt(lengths.squaredNorm() / static_cast<double>(lengths.size())); }
+  double rms() const {
+    return std::sqrt(lengths.squaredNorm() / static_cast<double>(lengths.size()));
+  }
 };
 
 Residuals Measure(const Problem& problem, const Eigen::VectorXd& x) {
@@ -57,8 +59,7 @@ Residuals Lawson(const Problem& problem) {
 void AddProfile(const std::string& problem, const std::string& method, const Residuals& residuals,
                 CsvTable* profiles) {
   for (Eigen::Index i = 0; i < residuals.lengths.size(); ++i) {
-    profiles->AddRow(
-        {problem, method, std::to_string(i), NumberText(residuals.lengths[i])});
+    profiles->AddRow({problem, method, std::to_string(i), NumberText(residuals.lengths[i])});
   }
 }
 
@@ -66,8 +67,7 @@ bool RunResiduals(const ExperimentRun& run, ExperimentTables* tables, std::strin
   CsvTable& ends = (*tables)[""] = CsvTable(RunColumnsBehind({"largest", "rms"}));
   CsvTable& traces = (*tables)["traces"] =
       CsvTable({"problem", "solver", "iteration", "largest", "rms"});
-  CsvTable& profiles = (*tables)["profiles"] =
-      CsvTable({"problem", "method", "point", "residual"});
+  CsvTable& profiles = (*tables)["profiles"] = CsvTable({"problem", "method", "point", "residual"});
   double done = 0.0;
   for (const char* name : {"rhino_interpolation", "rhino", "squirrel", "dolphin", "cat"}) {
     if (run.progress) run.progress(done / 5.0, name);
@@ -122,8 +122,7 @@ Judgement JudgeLargest(const ExperimentTables& tables) {
     ++judged;
     least += reached <= 1.01 * found ? 1 : 0;
     judgement.because +=
-        (judgement.because.empty() ? "the largest residual that lspia ends at is "
-                                   : ", ") +
+        (judgement.because.empty() ? "the largest residual that lspia ends at is " : ", ") +
         NumberText(std::round(100.0 * reached / found) / 100.0) + " (" + outline + ")";
   }
   if (judged == 0) return judgement;
@@ -149,8 +148,7 @@ std::vector<PlotPanel> Panels(const ExperimentTables& tables) {
                             PlotSeries::Style::kLine, color++});
   }
   const double least = Largest(tables, "rhino", kLawson);
-  falls.series.push_back(
-      {"lawson", {0.0, 350.0}, {least, least}, PlotSeries::Style::kDashed, 2});
+  falls.series.push_back({"lawson", {0.0, 350.0}, {least, least}, PlotSeries::Style::kDashed, 2});
   PlotPanel profile;
   profile.title = "rhino: residuals along the outline";
   profile.x_label = "point";
@@ -159,8 +157,8 @@ std::vector<PlotPanel> Panels(const ExperimentTables& tables) {
   color = 0;
   for (const std::string& method : profiles.Distinct("method")) {
     const CsvTable rows = profiles.Where("method", method);
-    profile.series.push_back({method, rows.Numbers("point"), rows.Numbers("residual"),
-                              PlotSeries::Style::kLine, color});
+    profile.series.push_back(
+        {method, rows.Numbers("point"), rows.Numbers("residual"), PlotSeries::Style::kLine, color});
     color += 2;
   }
   return {falls, profile};
@@ -188,15 +186,16 @@ Experiment AcceleratedGimLargestResidual() {
     }
     return shown;
   };
-  experiment.claims = {
-      {"GIM minimises the largest residual", "section on the energy",
-       "holds where on all four outlines the largest residual that lspia ends at is at most 1 % above "
-       "the least one found, in part where on one",
-       &JudgeLargest}};
-  experiment.figures = {{"largest_residual_rhino",
-                         "Left: the largest residual against the iteration; right: residuals of the "
-                         "least-squares curve and of Lawson's.",
-                         2, &Panels}};
+  experiment.claims = {{"GIM minimises the largest residual", "section on the energy",
+                        "holds where on all four outlines the largest residual that lspia ends at "
+                        "is at most 1 % above "
+                        "the least one found, in part where on one",
+                        &JudgeLargest}};
+  experiment.figures = {
+      {"largest_residual_rhino",
+       "Left: the largest residual against the iteration; right: residuals of the "
+       "least-squares curve and of Lawson's.",
+       2, &Panels}};
   return experiment;
 }
 

@@ -62,10 +62,10 @@ bool RunCases(const ExperimentRun& run, ExperimentTables* tables, std::string* e
         if (InterruptRequested()) return true;
         CsvTable rows(RunColumns());
         const RunResult result = on.Run(solver, spec, &rows);
-        const double distance =
-            result.skipped.empty()
-                ? (result.x - direct.x).cwiseAbs().maxCoeff() / c.problem->curve_fit()->setting().size
-                : std::nan("");
+        const double distance = result.skipped.empty()
+                                    ? (result.x - direct.x).cwiseAbs().maxCoeff() /
+                                          c.problem->curve_fit()->setting().size
+                                    : std::nan("");
         AddRowsBehind({NumberText(distance)}, rows, &runs);
       }
     }
@@ -86,10 +86,11 @@ Judgement JudgeOneCall(const ExperimentTables& tables) {
   }
   const int all = static_cast<int>(rows.num_rows());
   if (all == 0) return judgement;
-  judgement.because = "lbfgs reaches |g| <= 1e-10 |g(start)| on " + std::to_string(solved) + " of " +
-                      std::to_string(all) + " problems, and is at the direct answer nearest to the "
-                      "start, to 1e-6 of the size, on " + std::to_string(nearest) +
-                      " (the farthest is " + NumberText(worst) + " away)";
+  judgement.because = "lbfgs reaches |g| <= 1e-10 |g(start)| on " + std::to_string(solved) +
+                      " of " + std::to_string(all) +
+                      " problems, and is at the direct answer nearest to the "
+                      "start, to 1e-6 of the size, on " +
+                      std::to_string(nearest) + " (the farthest is " + NumberText(worst) + " away)";
   judgement.verdict = solved == all && nearest == all ? ClaimVerdict::kHolds
                       : solved == all                 ? ClaimVerdict::kInPart
                                                       : ClaimVerdict::kDoesNotHold;
@@ -121,8 +122,10 @@ Experiment AcceleratedGimOneCall() {
   experiment.name = "one_call";
   experiment.title = "Interpolation, approximation and too few points by one call";
   experiment.text =
-      "The rhinoceros' 100 points with 100, 80 and 150 control points, and with 100 where two points "
-      "share one parameter. Where the minimum is not unique the direct answer is the one nearest to "
+      "The rhinoceros' 100 points with 100, 80 and 150 control points, and with 100 where two "
+      "points "
+      "share one parameter. Where the minimum is not unique the direct answer is the one nearest "
+      "to "
       "the start.";
   experiment.run = &RunCases;
   experiment.shown = [](const ExperimentTables& tables) {
@@ -138,7 +141,8 @@ Experiment AcceleratedGimOneCall() {
   experiment.claims = {
       {"Interpolation, approximation and too few points by one call; two points on one parameter",
        "introduction",
-       "holds where lbfgs reaches |g| <= 1e-10 |g(start)| on all four problems and ends within 1e-6 "
+       "holds where lbfgs reaches |g| <= 1e-10 |g(start)| on all four problems and ends within "
+       "1e-6 "
        "of the size from the direct answer nearest to the start, in part where only the first",
        &JudgeOneCall}};
   experiment.figures = {

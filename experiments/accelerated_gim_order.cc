@@ -9,12 +9,24 @@ namespace batten {
 namespace {
 
 constexpr const char* kProblems[] = {"rhino", "squirrel", "dolphin", "cat"};
-constexpr const char* kSolvers[] = {
-    "lspia",           "lspia/step=optimal", "lspia/step=cauchy", "lspia/step=barzilai_borwein",
-    "jacobi_pia",      "gauss_seidel_pia",   "sor_pia",           "polyak_lspia",
-    "nesterov_lspia",  "mlspia",             "chebyshev_lspia",   "randomised_pia",
-    "anderson:lspia",  "cg",                 "lbfgs",             "lbfgs/memory=20",
-    "newton",          "banded_cholesky"};
+constexpr const char* kSolvers[] = {"lspia",
+                                    "lspia/step=optimal",
+                                    "lspia/step=cauchy",
+                                    "lspia/step=barzilai_borwein",
+                                    "jacobi_pia",
+                                    "gauss_seidel_pia",
+                                    "sor_pia",
+                                    "polyak_lspia",
+                                    "nesterov_lspia",
+                                    "mlspia",
+                                    "chebyshev_lspia",
+                                    "randomised_pia",
+                                    "anderson:lspia",
+                                    "cg",
+                                    "lbfgs",
+                                    "lbfgs/memory=20",
+                                    "newton",
+                                    "banded_cholesky"};
 // The square root of the gap is the error; below this gap it is rounding.
 constexpr double kLeastGap = 1e-26;
 constexpr int kFewest = 6;
@@ -177,22 +189,24 @@ Experiment AcceleratedGimOrder() {
   experiment.name = "order";
   experiment.title = "Speed, rate and order of every method";
   experiment.text =
-      "The four outlines by every method of the family, to |g| <= 1e-13 |g(start)| (race) and by the "
+      "The four outlines by every method of the family, to |g| <= 1e-13 |g(start)| (race) and by "
+      "the "
       "native rules. The error is the root of the gap, computed without cancellation. Its mean "
       "factor per iteration over the first and the last third tells a linear method (equal) from a "
       "superlinear one (towards zero); the order is the slope of log e_(k+1) on log e_k over the "
       "last half. On a quadratic L-BFGS with few pairs is a linear method.";
   experiment.run = &RunOrders;
   experiment.shown = [](const ExperimentTables& tables) { return tables.at("rates"); };
-  experiment.claims = {
-      {"Tens to hundreds of times faster", "abstract",
-       "ratio of native times of lspia and lbfgs: holds where it is at least 10 on all four, in part "
-       "where it is on one",
-       &JudgeTens},
-      {"superlinear", "section on the method",
-       "holds where on every outline the mean factor of the last third of lbfgs is below a tenth of "
-       "that of the first, in part where on one",
-       &JudgeSuperlinear}};
+  experiment.claims = {{"Tens to hundreds of times faster", "abstract",
+                        "ratio of native times of lspia and lbfgs: holds where it is at least 10 "
+                        "on all four, in part "
+                        "where it is on one",
+                        &JudgeTens},
+                       {"superlinear", "section on the method",
+                        "holds where on every outline the mean factor of the last third of lbfgs "
+                        "is below a tenth of "
+                        "that of the first, in part where on one",
+                        &JudgeSuperlinear}};
   experiment.figures = {
       {"order_gaps", "Gap of E against iteration on the rhinoceros, race.", 2, &Gaps}};
   return experiment;

@@ -84,7 +84,9 @@ Judgement JudgeGrowth(const ExperimentTables& tables) {
   const double seconds = Slope(tables, "seconds");
   Judgement judgement;
   if (std::isnan(iterations) || std::isnan(seconds)) return judgement;
-  const auto two_digits = [](double value) { return NumberText(std::round(100.0 * value) / 100.0 + 0.0); };
+  const auto two_digits = [](double value) {
+    return NumberText(std::round(100.0 * value) / 100.0 + 0.0);
+  };
   judgement.because = "over the sizes the ratio lspia / lbfgs of iterations goes like n^" +
                       two_digits(iterations) + ", that of times like n^" + two_digits(seconds);
   const bool both = iterations > kGrows && seconds > kGrows;
@@ -126,13 +128,14 @@ Experiment AcceleratedGimSize() {
   experiment.title = "The advantage against the size";
   experiment.text =
       "Closed loops with noise, uniform cubics, uniform parameters: n control points from 50 to "
-      "1e6, m / n from 1 to 100, m up to 1e7; native runs up to 1e5 points. Race runs stop at |g| <= 1e-6 |g(start)|, all runs "
+      "1e6, m / n from 1 to 100, m up to 1e7; native runs up to 1e5 points. Race runs stop at |g| "
+      "<= 1e-6 |g(start)|, all runs "
       "after 20 s. Times contain the set-up (summing up the normal band from m rows), which all "
       "methods share.";
   experiment.run = &RunSizes;
   experiment.shown = [](const ExperimentTables& tables) {
-    CsvTable shown({"n", "m", "lspia", "optimal", "lbfgs", "cg", "lspia s", "lbfgs s", "cg s",
-                    "cholesky s"});
+    CsvTable shown(
+        {"n", "m", "lspia", "optimal", "lbfgs", "cg", "lspia s", "lbfgs s", "cg s", "cholesky s"});
     const CsvTable race = tables.at("").Where("mode", "race");
     const CsvTable lspia = race.Where("solver", kLspia);
     const auto of = [&race](const char* solver) { return race.Where("solver", solver); };
@@ -142,8 +145,8 @@ Experiment AcceleratedGimSize() {
       shown.AddRow({lspia.Text(row, "control_points"), lspia.Text(row, "points"),
                     lspia.Text(row, "iterations"), optimal.Text(row, "iterations"),
                     lbfgs.Text(row, "iterations"), cg.Text(row, "iterations"),
-                    lspia.Text(row, "seconds"), lbfgs.Text(row, "seconds"),
-                    cg.Text(row, "seconds"), cholesky.Text(row, "seconds")});
+                    lspia.Text(row, "seconds"), lbfgs.Text(row, "seconds"), cg.Text(row, "seconds"),
+                    cholesky.Text(row, "seconds")});
     }
     return shown;
   };
@@ -152,9 +155,9 @@ Experiment AcceleratedGimSize() {
        "fits log(lspia / lbfgs) against log n over all race rows: holds where both the ratio of "
        "iterations and that of times grow faster than n^0.1, in part where one does",
        &JudgeGrowth}};
-  experiment.figures = {
-      {"size_growth", "Iterations and times against the number of control points, race.", 2,
-       &AgainstSize}};
+  experiment.figures = {{"size_growth",
+                         "Iterations and times against the number of control points, race.", 2,
+                         &AgainstSize}};
   return experiment;
 }
 

@@ -51,9 +51,9 @@ std::vector<Parameters> AllParameters(const Problem& outline) {
     all.push_back({"jitter " + NumberText(jitter), t});
   }
   for (const double crowding : {0.3, 0.45, 0.7, 0.95}) {
-    all.push_back({"pairs " + NumberText(crowding), from([](double i, double by) {
-                     return std::fmod(i, 2.0) == 1.0 ? i - by : i;
-                   }, crowding)});
+    all.push_back({"pairs " + NumberText(crowding),
+                   from([](double i, double by) { return std::fmod(i, 2.0) == 1.0 ? i - by : i; },
+                        crowding)});
   }
   return all;
 }
@@ -119,9 +119,9 @@ bool RunParameters(const ExperimentRun& run, ExperimentTables* tables, std::stri
         RunSpec limited = spec;
         limited.max_iterations = 3000;
         const RunResult result = on.Run(solver, limited, &rows, &traces);
-        AddRowsBehind({parameters.name, NumberText(PredictedRate(result)),
-                       NumberText(RateFromGaps(traces))},
-                      rows, &runs);
+        AddRowsBehind(
+            {parameters.name, NumberText(PredictedRate(result)), NumberText(RateFromGaps(traces))},
+            rows, &runs);
       }
     }
   }
@@ -149,12 +149,12 @@ Judgement JudgeRates(const ExperimentTables& tables) {
     }
   }
   if (judged == 0) return judgement;
-  judgement.because = std::to_string(agree) + " of " + std::to_string(judged) +
-                      " numbers of iterations per digit are within 5 % of the predicted one, the worst is "
-                      "off by " +
-                      NumberText(std::round(1000.0 * worst) / 10.0) + " %; " +
-                      std::to_string(foretold) + " of " + std::to_string(diverged) +
-                      " divergences had a spectral radius of 1 or more";
+  judgement.because =
+      std::to_string(agree) + " of " + std::to_string(judged) +
+      " numbers of iterations per digit are within 5 % of the predicted one, the worst is "
+      "off by " +
+      NumberText(std::round(1000.0 * worst) / 10.0) + " %; " + std::to_string(foretold) + " of " +
+      std::to_string(diverged) + " divergences had a spectral radius of 1 or more";
   judgement.verdict = agree == judged && foretold == diverged ? ClaimVerdict::kHolds
                       : 2 * agree >= judged                   ? ClaimVerdict::kInPart
                                                               : ClaimVerdict::kDoesNotHold;
@@ -195,11 +195,15 @@ Experiment AcceleratedGimSpectrum() {
   experiment.name = "spectrum";
   experiment.title = "The rate and the collocation matrix";
   experiment.text =
-      "The rhinoceros through all its 100 points, closed uniform cubic, with parameters from uniform "
-      "to adversarial: offsets from the knots, centripetal and chord length on uniform knots, random "
+      "The rhinoceros through all its 100 points, closed uniform cubic, with parameters from "
+      "uniform "
+      "to adversarial: offsets from the knots, centripetal and chord length on uniform knots, "
+      "random "
       "shifts by up to 0.45 of a knot distance, and every second point moved towards its neighbour "
-      "until spans have none (`pairs`). Predicted: the spectral radius of I - A for gim, of I - w A "
-      "for weighted_pia, (l1 - ln) / (l1 + ln) for LSPIA. Measured: the factor of the error between "
+      "until spans have none (`pairs`). Predicted: the spectral radius of I - A for gim, of I - w "
+      "A "
+      "for weighted_pia, (l1 - ln) / (l1 + ln) for LSPIA. Measured: the factor of the error "
+      "between "
       "the gaps 1e-16 and 1e-24. Runs end after 3,000 iterations.";
   experiment.run = &RunParameters;
   experiment.shown = [](const ExperimentTables& tables) {
@@ -215,7 +219,8 @@ Experiment AcceleratedGimSpectrum() {
   experiment.claims = {
       {"The rate is tied to the collocation matrix", "introduction",
        "iterations per digit, 1 / log(rate): holds where all those of gim, weighted_pia and "
-       "lspia/step=optimal are within 5 % of the predicted ones and every divergence was predicted, "
+       "lspia/step=optimal are within 5 % of the predicted ones and every divergence was "
+       "predicted, "
        "in part where half of them are",
        &JudgeRates}};
   experiment.figures = {{"spectrum_rates",

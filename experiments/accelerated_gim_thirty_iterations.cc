@@ -22,8 +22,8 @@ bool Cases(std::vector<Case>* cases, std::string* error) {
   }
   for (const int m : {9, 12, 20, 30, 50, 80, 100}) {
     for (const int n : {m, (m + 1) / 2}) {
-      cases->push_back({"loop_" + std::to_string(m) + "_" + std::to_string(n),
-                        LoopProblem(m, n, kSize)});
+      cases->push_back(
+          {"loop_" + std::to_string(m) + "_" + std::to_string(n), LoopProblem(m, n, kSize)});
     }
   }
   return true;
@@ -84,12 +84,12 @@ Judgement JudgeTenMore(const ExperimentTables& tables) {
     missed += fine.Text(row, "status") == "gradient_small" ? 0 : 1;
   }
   const double median = Median(more);
-  judgement.because = "the median of the further iterations is " + NumberText(median) + ", the most " +
-                      NumberText(*std::max_element(more.begin(), more.end())) + "; " +
-                      std::to_string(missed) + " of " + std::to_string(fine.num_rows()) +
+  judgement.because = "the median of the further iterations is " + NumberText(median) +
+                      ", the most " + NumberText(*std::max_element(more.begin(), more.end())) +
+                      "; " + std::to_string(missed) + " of " + std::to_string(fine.num_rows()) +
                       " runs end at the rounding floor above 1e-10";
   const bool about_ten = median >= 5.0 && median <= 15.0;
-  judgement.verdict = about_ten && missed == 0 ? ClaimVerdict::kHolds
+  judgement.verdict = about_ten && missed == 0   ? ClaimVerdict::kHolds
                       : about_ten || missed == 0 ? ClaimVerdict::kInPart
                                                  : ClaimVerdict::kDoesNotHold;
   return judgement;
@@ -119,8 +119,10 @@ Experiment AcceleratedGimThirtyIterations() {
   experiment.title = "Thirty iterations";
   experiment.text =
       "L-BFGS on the rhinoceros and the dolphin, approximated and interpolated, and on loops of 9 "
-      "to 100 points that are 10 wide, with as many control points as points and with half as many. "
-      "The rules are absolute, in the unit of the data squared: on data ten times as large they are "
+      "to 100 points that are 10 wide, with as many control points as points and with half as "
+      "many. "
+      "The rules are absolute, in the unit of the data squared: on data ten times as large they "
+      "are "
       "ten times as strict (experiment `units`).";
   experiment.run = &RunCases;
   experiment.shown = [](const ExperimentTables& tables) {
@@ -139,7 +141,8 @@ Experiment AcceleratedGimThirtyIterations() {
        "holds where all problems reach |g| < 1e-6 within 30 iterations, in part where half do",
        &JudgeThirty},
       {"about 10 more give 1e-10", "section on experiments",
-       "holds where the median of the further iterations is 5 to 15 and every run reaches 1e-10, in "
+       "holds where the median of the further iterations is 5 to 15 and every run reaches 1e-10, "
+       "in "
        "part where one of both is so",
        &JudgeTenMore}};
   experiment.figures = {{"thirty_iterations_counts",

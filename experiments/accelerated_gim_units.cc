@@ -80,17 +80,17 @@ Judgement JudgeUnits(const ExperimentTables& tables) {
   const Spread coarse = SpreadOf(tables, "rhino", "step or |g| < 1e-6", "lbfgs");
   const Spread fine = SpreadOf(tables, "rhino", "|g| < 1e-10", "lbfgs");
   const Spread race = SpreadOf(tables, "rhino", "race", "lbfgs");
-  judgement.because = "rhinoceros in units from 1e-3 to 1e6: " + Text("lspia", lspia) +
-                      " iterations, " + Text("lbfgs to 1e-6", coarse) + ", " +
-                      Text("to 1e-10", fine) + " (" + std::to_string(fine.missed) + " of " +
-                      std::to_string(std::size(kFactors)) +
-                      " end at the rounding floor above it); by the race's relative rule " +
-                      Text("lbfgs", race);
+  judgement.because =
+      "rhinoceros in units from 1e-3 to 1e6: " + Text("lspia", lspia) + " iterations, " +
+      Text("lbfgs to 1e-6", coarse) + ", " + Text("to 1e-10", fine) + " (" +
+      std::to_string(fine.missed) + " of " + std::to_string(std::size(kFactors)) +
+      " end at the rounding floor above it); by the race's relative rule " + Text("lbfgs", race);
   // A tenth, and the 1 that rounding can make.
   const auto is_steady = [](const Spread& spread) {
     return spread.missed == 0 && spread.most - spread.least <= 1.0 + 0.1 * spread.least;
   };
-  const int steady = (is_steady(lspia) ? 1 : 0) + (is_steady(coarse) ? 1 : 0) + (is_steady(fine) ? 1 : 0);
+  const int steady =
+      (is_steady(lspia) ? 1 : 0) + (is_steady(coarse) ? 1 : 0) + (is_steady(fine) ? 1 : 0);
   judgement.verdict = steady == 3  ? ClaimVerdict::kHolds
                       : steady > 0 ? ClaimVerdict::kInPart
                                    : ClaimVerdict::kDoesNotHold;
@@ -129,9 +129,11 @@ Experiment AcceleratedGimUnits() {
   experiment.title = "Absolute stop rules and the unit of the data";
   experiment.text =
       "The rhinoceros and the dolphin as they are (about 120 and 500 units wide), and in units in "
-      "which they are 1e-3, 10, 1e3 and 1e6 times as large. |g| has the unit of the data: in a unit "
+      "which they are 1e-3, 10, 1e3 and 1e6 times as large. |g| has the unit of the data: in a "
+      "unit "
       "1000 times finer |g| < 1e-6 asks for 1000 times less, and from some size on for less than "
-      "rounding leaves. Runs that the rule cannot end anymore stop at the rounding floor and say so.";
+      "rounding leaves. Runs that the rule cannot end anymore stop at the rounding floor and say "
+      "so.";
   experiment.run = &RunUnits;
   experiment.shown = [](const ExperimentTables& tables) {
     CsvTable shown({"problem", "factor", "rule", "solver", "status", "iterations", "|g|"});
@@ -144,14 +146,15 @@ Experiment AcceleratedGimUnits() {
     }
     return shown;
   };
-  experiment.claims = {
-      {"step < 1e-6, |g| < 1e-6 and |g| < 1e-10 say when to stop", "stop rules of all its experiments",
-       "holds where by each of the three rules the counts on the rhinoceros in all units are within "
-       "a tenth and every run ends by the rule, in part where this is so by one",
-       &JudgeUnits}};
-  experiment.figures = {
-      {"units_counts", "Iterations against the factor by which the data are enlarged.", 2,
-       &AgainstUnit}};
+  experiment.claims = {{"step < 1e-6, |g| < 1e-6 and |g| < 1e-10 say when to stop",
+                        "stop rules of all its experiments",
+                        "holds where by each of the three rules the counts on the rhinoceros in "
+                        "all units are within "
+                        "a tenth and every run ends by the rule, in part where this is so by one",
+                        &JudgeUnits}};
+  experiment.figures = {{"units_counts",
+                         "Iterations against the factor by which the data are enlarged.", 2,
+                         &AgainstUnit}};
   return experiment;
 }
 

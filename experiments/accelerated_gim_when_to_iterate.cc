@@ -148,8 +148,8 @@ Judgement JudgeReason(const ExperimentTables& tables, const std::string& reason,
                         " times banded_cholesky's time";
   }
   if (worst == 0.0) return judgement;
-  judgement.because +=
-      "; the slowest of this kind takes " + NumberText(std::round(100.0 * worst) / 100.0) + " times";
+  judgement.because += "; the slowest of this kind takes " +
+                       NumberText(std::round(100.0 * worst) / 100.0) + " times";
   judgement.verdict = worst < 1.0  ? ClaimVerdict::kHolds
                       : best < 1.0 ? ClaimVerdict::kInPart
                                    : ClaimVerdict::kDoesNotHold;
@@ -202,19 +202,23 @@ Experiment AcceleratedGimWhenToIterate() {
   experiment.name = "when_to_iterate";
   experiment.title = "When iterating pays at all";
   experiment.text =
-      "A fit with fixed parameters is a banded linear system, and `banded_cholesky` solves it in one "
+      "A fit with fixed parameters is a banded linear system, and `banded_cholesky` solves it in "
+      "one "
       "pass over the data and one over the band. An iteration can only pay where one of these does "
       "not hold. *Stopped early*: 1e6 points, 1e4 control points, to gaps of 0.1, 0.01 and 1e-4. "
       "*Warm*: the answer of the same data before each point moved by up to 1e-2, 1e-4, 1e-6 of "
       "the size, to 1e-6 of |g| at the cold start. *Structure that a band does not have*: P_0 = "
       "P_(n/2); after elimination our band is half as wide as the curve has control points (a "
-      "bordered solve, which Batten does not have, would stay direct and cheap). *Constraints* other "
+      "bordered solve, which Batten does not have, would stay direct and cheap). *Constraints* "
+      "other "
       "than linear equations: bounds are taken by `ceres_lm` alone, which factorizes too, in its "
-      "every iteration. With losses or free parameters E is no quadratic, and iterating is the only "
+      "every iteration. With losses or free parameters E is no quadratic, and iterating is the "
+      "only "
       "way.";
   experiment.run = &RunAll;
   experiment.shown = [](const ExperimentTables& tables) {
-    CsvTable shown({"reason", "setting", "solver", "iterations", "seconds", "times cholesky", "gap"});
+    CsvTable shown(
+        {"reason", "setting", "solver", "iterations", "seconds", "times cholesky", "gap"});
     const CsvTable& all = tables.at("");
     for (std::size_t row = 0; row < all.num_rows(); ++row) {
       shown.AddRow({all.Text(row, "reason"), all.Text(row, "setting"), all.Text(row, "solver"),

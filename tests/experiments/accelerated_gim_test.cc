@@ -1,0 +1,279 @@
+// Every verdict of the reproduction from hand-made tables, each way it can come out.
+#include "experiments/accelerated_gim.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <set>
+
+#include "cost_functions/options.h"
+#include "experiments/experiment_runs.h"
+
+namespace batten {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr ClaimVerdict kHolds = ClaimVerdict::kHolds;
+constexpr ClaimVerdict kInPart = ClaimVerdict::kInPart;
+constexpr ClaimVerdict kDoesNotHold = ClaimVerdict::kDoesNotHold;
+constexpr ClaimVerdict kUndecided = ClaimVerdict::kUndecided;
+
+using Cells = std::vector<std::pair<std::string, std::string>>;
+
+/// A row of `table` with these cells, the others empty.
+void Add(const Cells& cells, CsvTable* table) {
+  table->AddRow(std::vector<std::string>(table->columns().size()));
+  for (const auto& [column, text] : cells) table->Set(table->num_rows() - 1, column, text);
+}
+
+ClaimVerdict Verdict(const Experiment& experiment, const ExperimentTables& tables,
+                     std::size_t claim = 0) {
+  return experiment.claims.at(claim).judge(tables).verdict;
+}
+
+TEST(AcceleratedGim, ListsItsExperimentsWithDifferentNamesAndRules) {
+  const Reproduction reproduction = AcceleratedGim();
+  EXPECT_EQ(reproduction.experiments.size(), 10U);
+  std::set<std::string> names;
+  for (const Experiment& experiment : reproduction.experiments) {
+    EXPECT_TRUE(names.insert(experiment.name).second);
+    EXPECT_FALSE(experiment.claims.empty()) << experiment.name;
+    EXPECT_FALSE(experiment.figures.empty()) << experiment.name;
+    for (const SourceClaim& claim : experiment.claims) {
+      EXPECT_THAT(claim.rule, HasSubstr("holds")) << claim.quote;
+      EXPECT_FALSE(claim.place.empty()) << claim.quote;
+    }
+  }
+}
+
+ExperimentTables Offsets(const char* gim, const char* lbfgs) {
+  ExperimentTables tables;
+  CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"offset"}));
+  for (const auto& [solver, count] : {std::pair("gim", gim), {"lbfgs", lbfgs}}) {
+    Add({{"offset", "0.4"}, {"mode", "native"}, {"solver", solver}, {"iterations", count}}, &table);
+  }
+  return tables;
+}
+
+TEST(AcceleratedGim, JudgesTheCountsOfFigure1) {
+  const Experiment experiment = AcceleratedGimFigure1();
+  EXPECT_EQ(Verdict(experiment, Offsets("134", "8")), kHolds);
+  EXPECT_EQ(Verdict(experiment, Offsets("121", "16")), kHolds);
+  EXPECT_EQ(Verdict(experiment, Offsets("134", "17")), kInPart);
+  EXPECT_EQ(Verdict(experiment, Offsets("50", "10")), kInPart);
+  EXPECT_EQ(Verdict(experiment, Offsets("30", "31")), kDoesNotHold);
+}
+
+/// lspia `ratio` times as slow as lbfgs on all four outlines but the last, there `last` times.
+ExperimentTables Outlines(const std::string& column, double ratio, double last) {
+  ExperimentTables tables;
+  CsvTable& table = tables[""] = CsvTable(RunColumns());
+  for (const char* problem : {"rhino", "squirrel", "dolphin", "cat"}) {
+    const double times = std::string(problem) == "cat" ? last : ratio;
+    const auto row = [&](const char* solver, double value) {
+      Add({{"problem", problem}, {"mode", "native"}, {"solver", solver}, {column, NumberText(value)}},
+          &table);
+    };
+    row("lspia", 20.0 * times);
+    row("lbfgs", 20.0);
+  }
+  return tables;
+}
+
+TEST(AcceleratedGim, JudgesTheRatiosOfTable1) {
+  const Experiment experiment = AcceleratedGimOutlines();
+  const std::pair<const char*, std::size_t> claims[] = {{"iterations", 0}, {"seconds", 1}};
+  for (const auto& [column, claim] : claims) {
+    EXPECT_EQ(Verdict(experiment, Outlines(column, 16.0, 16.0), claim), kHolds) << column;
+    EXPECT_EQ(Verdict(experiment, Outlines(column, 16.0, 2.0), claim), kInPart) << column;
+    EXPECT_EQ(Verdict(experiment, Outlines(column, 0.5, 1.5), claim), kInPart) << column;
+    EXPECT_EQ(Verdict(experiment, Outlines(column, 0.5, 0.5), claim), kDoesNotHold) << column;
+    EXPECT_EQ(Verdict(experiment, {{"", CsvTable(RunColumns())}}, claim), kUndecided);
+  }
+}
+
+/// Counts to 1e-6, and `more` to 1e-10, which is reached if `status` says so.
+ExperimentTables Thirty(const std::vector<int>& counts, int more, const char* status) {
+  ExperimentTables tables;
+  CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"rule"}));
+  for (const int count : counts) {
+    Add({{"rule", "|g| < 1e-6"},
+         {"status", "gradient_small"},
+         {"iterations", std::to_string(count)}},
+        &table);
+    Add({{"rule", "|g| < 1e-10"},
+         {"status", status},
+         {"iterations", std::to_string(count + more)}},
+        &table);
+  }
+  return tables;
+}
+
+TEST(AcceleratedGim, JudgesThirtyIterationsAndTenMore) {
+  const Experiment experiment = AcceleratedGimThirtyIterations();
+  EXPECT_EQ(Verdict(experiment, Thirty({30, 12, 29}, 10, "gradient_small")), kHolds);
+  EXPECT_EQ(Verdict(experiment, Thirty({31, 12, 29}, 10, "gradient_small")), kInPart);
+  EXPECT_EQ(Verdict(experiment, Thirty({31, 40, 29}, 10, "gradient_small")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, Thirty({30, 12}, 10, "gradient_small"), 1), kHolds);
+  EXPECT_EQ(Verdict(experiment, Thirty({30, 12}, 20, "gradient_small"), 1), kInPart);
+  EXPECT_EQ(Verdict(experiment, Thirty({30, 12}, 10, "rounding_floor"), 1), kInPart);
+  EXPECT_EQ(Verdict(experiment, Thirty({30, 12}, 20, "rounding_floor"), 1), kDoesNotHold);
+}
+
+ExperimentTables Sizes(double iteration_power, double time_power) {
+  ExperimentTables tables;
+  CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"points_per_control_point"}));
+  for (const double n : {50.0, 5000.0, 500000.0}) {
+    const auto row = [&](const char* solver, double iterations, double seconds) {
+      Add({{"mode", "race"},
+           {"solver", solver},
+           {"control_points", NumberText(n)},
+           {"iterations", NumberText(iterations)},
+           {"seconds", NumberText(seconds)}},
+          &table);
+    };
+    row("lspia", 30.0 * std::pow(n, iteration_power), 1e-6 * n * std::pow(n, time_power));
+    row("lbfgs", 10.0, 1e-7 * n);
+  }
+  return tables;
+}
+
+TEST(AcceleratedGim, JudgesWhetherTheAdvantageGrows) {
+  const Experiment experiment = AcceleratedGimSize();
+  EXPECT_EQ(Verdict(experiment, Sizes(0.2, 0.3)), kHolds);
+  EXPECT_EQ(Verdict(experiment, Sizes(0.0, 0.3)), kInPart);
+  EXPECT_EQ(Verdict(experiment, Sizes(0.0, 0.05)), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, Sizes(-0.5, 0.0)), kDoesNotHold);
+}
+
+TEST(AcceleratedGim, JudgesTensOfTimesAndSuperlinear) {
+  const Experiment experiment = AcceleratedGimOrder();
+  EXPECT_EQ(Verdict(experiment, Outlines("seconds", 30.0, 10.0)), kHolds);
+  EXPECT_EQ(Verdict(experiment, Outlines("seconds", 30.0, 9.0)), kInPart);
+  EXPECT_EQ(Verdict(experiment, Outlines("seconds", 3.0, 9.0)), kDoesNotHold);
+  const auto rates = [](const char* one, const char* other) {
+    ExperimentTables tables;
+    CsvTable& table = tables["rates"] = CsvTable(
+        {"problem", "solver", "iterations", "first_factor", "last_factor", "order"});
+    table.AddRow({"rhino", "lbfgs", "30", "0.6", one, "1"});
+    table.AddRow({"cat", "lbfgs", "30", "0.6", other, "1"});
+    return tables;
+  };
+  EXPECT_EQ(Verdict(experiment, rates("0.05", "0.01"), 1), kHolds);
+  EXPECT_EQ(Verdict(experiment, rates("0.05", "0.5"), 1), kInPart);
+  EXPECT_EQ(Verdict(experiment, rates("0.6", "0.5"), 1), kDoesNotHold);
+}
+
+TEST(AcceleratedGim, JudgesRatesAgainstTheSpectrum) {
+  const auto rates = [](const char* measured, const char* other, const char* status = "") {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] =
+        CsvTable(RunColumnsBehind({"parameters", "predicted_rate", "measured_rate"}));
+    for (const char* rate : {measured, other}) {
+      Add({{"predicted_rate", "0.5"},
+           {"measured_rate", rate},
+           {"mode", "race"},
+           {"solver", "gim"},
+           {"status", status}},
+          &table);
+    }
+    return tables;
+  };
+  const Experiment experiment = AcceleratedGimSpectrum();
+  EXPECT_EQ(Verdict(experiment, rates("0.51", "0.49")), kHolds);
+  EXPECT_EQ(Verdict(experiment, rates("0.51", "0.6")), kInPart);
+  EXPECT_EQ(Verdict(experiment, rates("0.6", "0.6")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, rates("0.51", "0.49", "diverged")), kInPart);
+  EXPECT_EQ(Verdict(experiment, rates("nan", "nan")), kUndecided);
+}
+
+TEST(AcceleratedGim, JudgesOneCall) {
+  const auto runs = [](const char* status, const char* distance) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"distance_to_direct"}));
+    Add({{"distance_to_direct", distance}, {"mode", "race"}, {"solver", "lbfgs"},
+         {"status", status}},
+        &table);
+    return tables;
+  };
+  const Experiment experiment = AcceleratedGimOneCall();
+  EXPECT_EQ(Verdict(experiment, runs("gradient_small", "1e-9")), kHolds);
+  EXPECT_EQ(Verdict(experiment, runs("gradient_small", "7.4")), kInPart);
+  EXPECT_EQ(Verdict(experiment, runs("iteration_limit", "1e-9")), kDoesNotHold);
+}
+
+TEST(AcceleratedGim, JudgesTheLargestResidual) {
+  const auto residuals = [](const char* rhino, const char* cat) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"largest", "rms"}));
+    for (const auto& [problem, reached] : {std::pair("rhino", rhino), {"cat", cat}}) {
+      Add({{"largest", reached}, {"problem", problem}, {"solver", "lspia"}}, &table);
+      Add({{"largest", "1"}, {"problem", problem}, {"solver", "lawson"}}, &table);
+    }
+    return tables;
+  };
+  const Experiment experiment = AcceleratedGimLargestResidual();
+  EXPECT_EQ(Verdict(experiment, residuals("1.005", "1")), kHolds);
+  EXPECT_EQ(Verdict(experiment, residuals("1.005", "1.4")), kInPart);
+  EXPECT_EQ(Verdict(experiment, residuals("1.3", "1.4")), kDoesNotHold);
+}
+
+TEST(AcceleratedGim, JudgesStopRulesInOtherUnits) {
+  /// Counts in two units by rule: lspia's, lbfgs' to 1e-6, lbfgs' to 1e-10.
+  const auto units = [](const char* lspia, const char* coarse, const char* fine,
+                        const char* fine_status) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"factor", "rule"}));
+    const auto rows = [&table](const char* rule, const char* solver, const char* other,
+                               const char* status) {
+      for (const char* count : {"50", other}) {
+        Add({{"rule", rule},
+             {"problem", "rhino"},
+             {"solver", solver},
+             {"status", status},
+             {"iterations", count}},
+            &table);
+      }
+    };
+    rows("step or |g| < 1e-6", "lspia", lspia, "step_small");
+    rows("step or |g| < 1e-6", "lbfgs", coarse, "gradient_small");
+    rows("|g| < 1e-10", "lbfgs", fine, fine_status);
+    return tables;
+  };
+  const Experiment experiment = AcceleratedGimUnits();
+  EXPECT_EQ(Verdict(experiment, units("50", "52", "55", "gradient_small")), kHolds);
+  EXPECT_EQ(Verdict(experiment, units("50", "52", "55", "rounding_floor")), kInPart);
+  EXPECT_EQ(Verdict(experiment, units("90", "52", "99", "gradient_small")), kInPart);
+  EXPECT_EQ(Verdict(experiment, units("90", "99", "99", "gradient_small")), kDoesNotHold);
+}
+
+TEST(AcceleratedGim, JudgesWhetherIteratingPays) {
+  const auto times = [](const std::string& reason, const std::string& ending, const char* one,
+                        const char* other) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"reason", "setting"}));
+    for (const char* value : {one, other}) {
+      Add({{"reason", reason}, {"setting", "x" + ending}, {"solver", "cg"},
+           {"times_cholesky", value}},
+          &table);
+    }
+    Add({{"reason", reason}, {"setting", "x" + ending}, {"solver", "banded_cholesky"},
+         {"times_cholesky", "1"}},
+        &table);
+    return tables;
+  };
+  const Experiment experiment = AcceleratedGimWhenToIterate();
+  const std::pair<const char*, const char*> reasons[] = {
+      {"early stopping", ""}, {"warm start", " (warm)"}, {"control points tied", ""}};
+  for (std::size_t claim = 0; claim < 3; ++claim) {
+    const auto& [reason, ending] = reasons[claim];
+    EXPECT_EQ(Verdict(experiment, times(reason, ending, "0.5", "0.9"), claim), kHolds);
+    EXPECT_EQ(Verdict(experiment, times(reason, ending, "0.5", "1.1"), claim), kInPart);
+    EXPECT_EQ(Verdict(experiment, times(reason, ending, "1.5", "1.1"), claim), kDoesNotHold);
+  }
+  EXPECT_EQ(Verdict(experiment, times("warm start", " (cold)", "0.5", "0.9"), 1), kUndecided);
+}
+
+}  // namespace
+}  // namespace batten
