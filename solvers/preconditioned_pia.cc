@@ -31,9 +31,8 @@ Eigen::VectorXd InverseRow(const SparseRowMajor& a, int j, const std::vector<int
       equation_of.emplace(static_cast<int>(entry.col()), static_cast<int>(equation_of.size()));
     }
   }
-  Eigen::MatrixXd transposed =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equation_of.size()),
-                            static_cast<Eigen::Index>(columns.size()));
+  Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equation_of.size()),
+                                                     static_cast<Eigen::Index>(columns.size()));
   for (std::size_t k = 0; k < columns.size(); ++k) {
     for (SparseRowMajor::InnerIterator entry(a, columns[k]); entry; ++entry) {
       transposed(equation_of[static_cast<int>(entry.col())], static_cast<Eigen::Index>(k)) =
@@ -44,6 +43,25 @@ Eigen::VectorXd InverseRow(const SparseRowMajor& a, int j, const std::vector<int
   Eigen::VectorXd row = transposed.colPivHouseholderQr().solve(unit);
   *distance = (unit - transposed * row).lpNorm<1>();
   return row;
+}
+
+/// matrix times v, faster than Eigen's for few columns; kDimension < 0: any number of them.
+template <int kDimension>
+Points Product(const SparseRowMajor& matrix, const Points& v) {
+  if constexpr (kDimension < 0) {
+    return matrix * v;
+  } else {
+    Points product(v.rows(), v.cols());
+    for (Eigen::Index row = 0; row < v.rows(); ++row) {
+      double sum[kDimension] = {};
+      for (SparseRowMajor::InnerIterator entry(matrix, row); entry; ++entry) {
+        const double* const source = v.data() + entry.col() * kDimension;
+        for (int c = 0; c < kDimension; ++c) sum[c] += entry.value() * source[c];
+      }
+      std::copy_n(sum, kDimension, product.data() + row * kDimension);
+    }
+    return product;
+  }
 }
 
 }  // namespace
@@ -86,7 +104,19 @@ std::optional<Outcome> PreconditionedPiaSolver::Prepare() {
 }
 
 void PreconditionedPiaSolver::TurnIntoMoves(Points* residuals) const {
-  *residuals = (inverse_ * *residuals).eval();
+  switch (residuals->cols()) {
+    case 1:
+      *residuals = Product<1>(inverse_, *residuals);
+      break;
+    case 2:
+      *residuals = Product<2>(inverse_, *residuals);
+      break;
+    case 3:
+      *residuals = Product<3>(inverse_, *residuals);
+      break;
+    default:
+      *residuals = Product<-1>(inverse_, *residuals);
+  }
 }
 
 }  // namespace batten
