@@ -13,7 +13,7 @@ SolverInfo ChebyshevLspiaSolver::ClassInfo() {
   info.supports = {"linear constraints", "weights", "any rank (nearest to the start)"};
   info.native_rule = NativeRule::kStep;
   // In the published order, smallest step first, what belongs to large eigenvalues grows again in
-  // the last steps of a cycle, and rounding with it: 1e3 times for 8 steps, 1e6 times for 16.
+  // the last steps of a cycle, and rounding with it: up to 6e3 times for 8 steps, 7e7 for 16.
   info.options = {OptionInfo::Integer("cycle", 8, 1, 1000000,
                                       "number K of steps after which they are repeated")};
   return info;

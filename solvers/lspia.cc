@@ -100,20 +100,21 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
   constexpr double kOpposite = -1.0 + 1e-10;
   constexpr double kSameLength = 1.0 - 1e-10;
   constexpr int kPatience = 20;
-  const Eigen::VectorXd move = g_of_x - x;
-  if (last_move_.size() == move.size()) {
-    const double product = move.norm() * last_move_.norm();
-    const bool turned = product > 0.0 && move.dot(last_move_) <= kOpposite * product;
-    const bool as_long = move.norm() >= kSameLength * last_move_.norm();
-    alternations_ = turned && as_long ? alternations_ + 1 : 0;
-    if (alternations_ >= kPatience) {
-      return Outcome{StopReason::kStalled,
-                     "an eigenvalue of I - mu A'A is -1: the iteration jumps to and fro and never "
-                     "converges; take a smaller step (relaxation below 1)"};
-    }
+  move_ = g_of_x - x;
+  const double length = move_.norm();
+  const bool as_long = last_move_.size() == move_.size() && length >= kSameLength * last_length_;
+  // Hardly ever: moves shrink.
+  const double product = length * last_length_;
+  const bool turned = as_long && product > 0.0 && move_.dot(last_move_) <= kOpposite * product;
+  alternations_ = turned ? alternations_ + 1 : 0;
+  if (alternations_ >= kPatience) {
+    return Outcome{StopReason::kStalled,
+                   "an eigenvalue of I - mu A'A is -1: the iteration jumps to and fro and never "
+                   "converges; take a smaller step (relaxation below 1)"};
   }
-  last_move_ = move;
-  return guard_.Check(move.norm());
+  last_move_.swap(move_);
+  last_length_ = length;
+  return guard_.Check(length);
 }
 
 std::vector<double> LspiaSolver::State() const {
@@ -126,6 +127,7 @@ std::vector<double> LspiaSolver::State() const {
 void LspiaSolver::Restore(const std::vector<double>& state) {
   const auto size = static_cast<Eigen::Index>(state.size()) - 3;
   last_move_ = Eigen::Map<const Eigen::VectorXd>(state.data(), size);
+  last_length_ = last_move_.norm();
   alternations_ = static_cast<int>(state[static_cast<std::size_t>(size)]);
   guard_.Restore(state.data() + size + 1);
 }

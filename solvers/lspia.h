@@ -29,7 +29,9 @@ class LspiaSolver final : public FixedPoint {
   Eigen::VectorXd step_;      // mu per variable; empty for cauchy
   Eigen::VectorXd residual_;  // A'(Q - A P) at the last point mapped
   Eigen::VectorXd product_;
+  Eigen::VectorXd move_;
   Eigen::VectorXd last_move_;
+  double last_length_ = 0.0;
   int alternations_ = 0;
   StallGuard guard_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solvers/lanczos.h"
 
@@ -28,7 +29,9 @@ Status Estimate(const Multiply& multiply, Eigen::Index size, std::uint64_t seed,
       spectrum.largest > 0.0 && spectrum.largest_error <= kRelativeError * spectrum.largest;
   result->largest =
       settled ? std::min(gershgorin, spectrum.largest + spectrum.largest_error) : gershgorin;
-  result->smallest = std::clamp(spectrum.smallest, 0.0, result->largest);
+  // Never 0, also where the recursion could not be read: a momentum of 1 would not converge.
+  constexpr double kNull = 64.0 * std::numeric_limits<double>::epsilon();
+  result->smallest = std::clamp(spectrum.smallest, kNull * result->largest, result->largest);
   return status;
 }
 

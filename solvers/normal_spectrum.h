@@ -12,8 +12,8 @@ struct NormalSpectrum {
   /// l1, never below the largest eigenvalue: the largest Ritz value and its error where the
   /// recursion settled, else the largest row sum of |N| (Gershgorin).
   double largest = 0.0;
-  /// ln: the smallest Ritz value, which may be above the smallest eigenvalue; without the null
-  /// space, where nothing has to converge.
+  /// ln, above 0: the smallest Ritz value, which may be above the smallest eigenvalue; without the
+  /// null space, where nothing has to converge.
   double smallest = 0.0;
 };
 

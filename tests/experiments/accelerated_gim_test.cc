@@ -72,7 +72,10 @@ ExperimentTables Outlines(const std::string& column, double ratio, double last) 
   for (const char* problem : {"rhino", "squirrel", "dolphin", "cat"}) {
     const double times = std::string(problem) == "cat" ? last : ratio;
     const auto row = [&](const char* solver, double value) {
-      Add({{"problem", problem}, {"mode", "native"}, {"solver", solver}, {column, NumberText(value)}},
+      Add({{"problem", problem},
+           {"mode", "native"},
+           {"solver", solver},
+           {column, NumberText(value)}},
           &table);
     };
     row("lspia", 20.0 * times);
@@ -102,9 +105,7 @@ ExperimentTables Thirty(const std::vector<int>& counts, int more, const char* st
          {"status", "gradient_small"},
          {"iterations", std::to_string(count)}},
         &table);
-    Add({{"rule", "|g| < 1e-10"},
-         {"status", status},
-         {"iterations", std::to_string(count + more)}},
+    Add({{"rule", "|g| < 1e-10"}, {"status", status}, {"iterations", std::to_string(count + more)}},
         &table);
   }
   return tables;
@@ -154,8 +155,8 @@ TEST(AcceleratedGim, JudgesTensOfTimesAndSuperlinear) {
   EXPECT_EQ(Verdict(experiment, Outlines("seconds", 3.0, 9.0)), kDoesNotHold);
   const auto rates = [](const char* one, const char* other) {
     ExperimentTables tables;
-    CsvTable& table = tables["rates"] = CsvTable(
-        {"problem", "solver", "iterations", "first_factor", "last_factor", "order"});
+    CsvTable& table = tables["rates"] =
+        CsvTable({"problem", "solver", "iterations", "first_factor", "last_factor", "order"});
     table.AddRow({"rhino", "lbfgs", "30", "0.6", one, "1"});
     table.AddRow({"cat", "lbfgs", "30", "0.6", other, "1"});
     return tables;
@@ -192,7 +193,9 @@ TEST(AcceleratedGim, JudgesOneCall) {
   const auto runs = [](const char* status, const char* distance) {
     ExperimentTables tables;
     CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"distance_to_direct"}));
-    Add({{"distance_to_direct", distance}, {"mode", "race"}, {"solver", "lbfgs"},
+    Add({{"distance_to_direct", distance},
+         {"mode", "race"},
+         {"solver", "lbfgs"},
          {"status", status}},
         &table);
     return tables;
@@ -254,11 +257,15 @@ TEST(AcceleratedGim, JudgesWhetherIteratingPays) {
     ExperimentTables tables;
     CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"reason", "setting"}));
     for (const char* value : {one, other}) {
-      Add({{"reason", reason}, {"setting", "x" + ending}, {"solver", "cg"},
+      Add({{"reason", reason},
+           {"setting", "x" + ending},
+           {"solver", "cg"},
            {"times_cholesky", value}},
           &table);
     }
-    Add({{"reason", reason}, {"setting", "x" + ending}, {"solver", "banded_cholesky"},
+    Add({{"reason", reason},
+         {"setting", "x" + ending},
+         {"solver", "banded_cholesky"},
          {"times_cholesky", "1"}},
         &table);
     return tables;
