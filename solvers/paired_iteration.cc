@@ -134,8 +134,8 @@ std::string PairedIteration::WhyUnsupported(const Objective& objective) const {
 std::optional<Outcome> PairedIteration::DoStart(Eigen::VectorXd* /*x*/) {
   guard_.Reset();
   const Problem& problem = objective()->problem();
-  control_point_of_row_ =
-      PairWithControlPoints(problem.curve_fit()->basis(), ParametersByRow(problem));
+  rows_ = PairedRows(objective()->curve_view()->rows(),
+                     PairWithControlPoints(problem.curve_fit()->basis(), ParametersByRow(problem)));
   if (std::optional<Outcome> outcome = Prepare()) return outcome;
   context()->OffTheClock([this] {
     const double radius = SpectralRadius();
@@ -146,26 +146,19 @@ std::optional<Outcome> PairedIteration::DoStart(Eigen::VectorXd* /*x*/) {
   return std::nullopt;
 }
 
-void PairedIteration::Pair(const Points& by_row, Points* by_control_point) const {
-  by_control_point->resize(by_row.rows(), by_row.cols());
-  for (Eigen::Index row = 0; row < by_row.rows(); ++row) {
-    by_control_point->row(control_point_of_row_[static_cast<std::size_t>(row)]) = by_row.row(row);
-  }
-}
-
 Status PairedIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
-  CurveView& view = *objective()->curve_view();
-  const Status status = view.Residuals(x, &residuals_);
-  if (status != Status::kOk) return status;
-  Pair(residuals_, &moves_);
+  if (!objective()->curve_view()->AllowProduct(x)) return Status::kStop;
+  rows_.Residuals(x.data(), &moves_);
+  if (!moves_.allFinite()) return Status::kNonFinite;
   TurnIntoMoves(&moves_);
   *g_of_x = x + Eigen::Map<const Eigen::VectorXd>(moves_.data(), x.size());
   return Status::kOk;
 }
 
-std::optional<Outcome> PairedIteration::Inspect(const Eigen::VectorXd& x,
-                                                const Eigen::VectorXd& g_of_x) {
-  return guard_.Check((g_of_x - x).norm());
+/// Follows the Map of the same x.
+std::optional<Outcome> PairedIteration::Inspect(const Eigen::VectorXd& /*x*/,
+                                                const Eigen::VectorXd& /*g_of_x*/) {
+  return guard_.Check(moves_.norm());
 }
 
 std::vector<double> PairedIteration::State() const {
@@ -176,28 +169,8 @@ std::vector<double> PairedIteration::State() const {
 
 void PairedIteration::Restore(const std::vector<double>& state) { guard_.Restore(state.data()); }
 
-Eigen::SparseMatrix<double, Eigen::RowMajor> PairedIteration::Collocation() const {
-  const BandedRows& rows = objective()->curve_view()->rows();
-  const int n = rows.shape().num_columns;
-  std::vector<Eigen::Triplet<double>> entries;
-  int row = 0;
-  for (std::size_t b = 0; b < rows.num_blocks(); ++b) {
-    const RowBlock block = rows.block(b);
-    for (int i = 0; i < block.num_rows; ++i, ++row) {
-      const int j = control_point_of_row_[static_cast<std::size_t>(row)];
-      for (int k = 0; k < rows.shape().width; ++k) {
-        entries.emplace_back(j, (block.first_column + k) % n,
-                             block.coefficients[k * block.stride + i]);
-      }
-    }
-  }
-  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
 double PairedIteration::SpectralRadius() const {
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> a = Collocation();
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> a = rows_.ToSparse();
   const auto apply = [&](const Points& v) {
     Points moved = -(a * v);
     TurnIntoMovesLinearly(&moved);

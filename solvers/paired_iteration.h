@@ -1,11 +1,11 @@
 #ifndef BATTEN_SOLVERS_PAIRED_ITERATION_H_
 #define BATTEN_SOLVERS_PAIRED_ITERATION_H_
 
-#include <Eigen/SparseCore>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "solvers/paired_rows.h"
 #include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
 #include "splines/bspline_basis.h"
@@ -33,17 +33,14 @@ class PairedIteration : public FixedPoint {
 
   std::optional<Outcome> Inspect(const Eigen::VectorXd& x, const Eigen::VectorXd& g_of_x) override;
 
-  /// A, n x n.
-  Eigen::SparseMatrix<double, Eigen::RowMajor> Collocation() const;
+  /// A.
+  const PairedRows& rows() const { return rows_; }
 
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) final;
   double SpectralRadius() const;
-  /// Residuals in row order, put where their control points are.
-  void Pair(const Points& by_row, Points* by_control_point) const;
 
-  std::vector<int> control_point_of_row_;
-  Points residuals_;
+  PairedRows rows_;
   Points moves_;
   StallGuard guard_;
 };

@@ -84,7 +84,7 @@ PreconditionedPiaSolver::PreconditionedPiaSolver(const OptionValues& options)
     : half_width_(options.Integer("half_width")) {}
 
 std::optional<Outcome> PreconditionedPiaSolver::Prepare() {
-  const SparseRowMajor a = Collocation();
+  const SparseRowMajor a = rows().ToSparse();
   const auto n = static_cast<int>(a.rows());
   std::vector<Eigen::Triplet<double>> entries;
   double norm = 0.0;

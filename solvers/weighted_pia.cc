@@ -41,7 +41,7 @@ std::optional<Outcome> WeightedPiaSolver::Prepare() {
 /// In size. A has positive eigenvalues where the basis is totally positive and points are paired in
 /// order; 0 if A is singular to working precision.
 double WeightedPiaSolver::SmallestEigenvalue() const {
-  const Eigen::SparseMatrix<double> a = Collocation();
+  const Eigen::SparseMatrix<double> a = rows().ToSparse();
   constexpr int kLargestDense = 100;
   if (a.rows() <= kLargestDense) {
     return Eigen::EigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(a), false)
