@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -95,6 +97,17 @@ TEST_P(EveryTerm, SaysWhatItIs) {
       EXPECT_GE(option.highest, option.default_number) << option.name;
     }
   }
+}
+
+TEST_P(EveryTerm, HasAPageAndARowInTheTable) {
+  const std::string folder = BATTEN_SOURCE_DIR "/docs/terms/";
+  std::ifstream page(folder + GetParam() + ".md");
+  std::string title;
+  std::getline(page, title);
+  EXPECT_EQ(title, "# " + GetParam());
+  std::ifstream table(folder + "README.md");
+  const std::string rows{std::istreambuf_iterator<char>(table), std::istreambuf_iterator<char>()};
+  EXPECT_NE(rows.find("](" + GetParam() + ".md)"), std::string::npos);
 }
 
 TEST_P(EveryTerm, DerivativesAreThoseOfItsEnergy) {

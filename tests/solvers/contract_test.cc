@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "tests/solvers/contract_cases.h"
@@ -21,6 +24,39 @@ TEST_P(EverySolver, SaysWhatItIs) {
   EXPECT_FALSE(info.summary.empty());
   EXPECT_EQ(info.summary.find('\n'), std::string::npos);
   EXPECT_FALSE(info.source.empty());
+}
+
+std::string ReadText(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// The cell behind "| `option` | " without backticks; empty where there is none.
+std::string DefaultOnPage(const std::string& page, const std::string& option) {
+  const std::string begin = "\n| `" + option + "` | ";
+  const std::size_t found = page.find(begin);
+  if (found == std::string::npos) return "";
+  const std::size_t cell = found + begin.size();
+  std::string text = page.substr(cell, page.find(" |", cell) - cell);
+  text.erase(std::remove(text.begin(), text.end(), '`'), text.end());
+  return text;
+}
+
+TEST_P(EverySolver, HasAPageWithItsDefaultsAndARowInTheTable) {
+  const std::string folder = BATTEN_SOURCE_DIR "/docs/solvers/";
+  const std::string page = ReadText(folder + GetParam() + ".md");
+  EXPECT_EQ(page.rfind("# " + GetParam() + "\n", 0), 0U);
+  for (const OptionInfo& option : SolverRegistry::Global().Find(GetParam())->options) {
+    const std::string text = DefaultOnPage(page, option.name);
+    double number = 0.0;
+    if (option.kind == OptionInfo::Kind::kWord) {
+      EXPECT_EQ(text, option.default_word) << option.name;
+    } else {
+      ASSERT_TRUE(ParseNumber(text, &number)) << option.name << ": " << text;
+      EXPECT_EQ(number, option.default_number) << option.name;
+    }
+  }
+  EXPECT_THAT(ReadText(folder + "README.md"), ::testing::HasSubstr("](" + GetParam() + ".md)"));
 }
 
 TEST_P(EverySolver, OptionsHaveDefaultsInTheirRangesAndHelp) {
