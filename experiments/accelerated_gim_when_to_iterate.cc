@@ -39,6 +39,7 @@ void RunEarly(int repetitions, CsvTable* table) {
       if (InterruptRequested()) return;
       const auto found =
           std::find_if(gaps.begin(), gaps.end(), [gap](double value) { return value <= gap; });
+      if (found == gaps.end()) continue;
       RunSpec spec = RaceSpec(0.0);
       spec.max_iterations = static_cast<int>(found - gaps.begin());
       spec.keep_trace = false;

@@ -121,7 +121,7 @@ double SpectralRadiusOf(const std::function<Points(const Points&)>& apply, int n
 
 std::string PairedIteration::WhyUnsupported(const Objective& objective) const {
   const std::string name = Info().name;
-  const std::string why = WhyNotPlainInterpolation(objective, name);
+  std::string why = WhyNotPlainInterpolation(objective, name);
   if (!why.empty()) return why;
   const CurveFit& fit = *objective.problem().curve_fit();
   const auto m = std::to_string(fit.parameters().size());
