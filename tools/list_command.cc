@@ -128,6 +128,10 @@ std::string SolversText() {
     std::string needs;
     for (const std::string& need : info.needs) needs += (needs.empty() ? "needs " : ", ") + need;
     if (!needs.empty()) text += std::string(kIndent, ' ') + Wrapped(needs, kIndent, kIndent);
+    if (!info.limit.empty()) {
+      const std::string limit = "does not go to the minimum of E, but to " + info.limit;
+      text += std::string(kIndent, ' ') + Wrapped(limit, kIndent, kIndent);
+    }
     text += OptionsText(info.options);
   }
   return text;
