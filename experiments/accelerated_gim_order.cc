@@ -27,6 +27,10 @@ constexpr const char* kSolvers[] = {"lspia",
                                     "lbfgs/memory=20",
                                     "newton",
                                     "banded_cholesky"};
+// As many control points as points, for the methods that need it.
+constexpr const char* kThrough = "rhino_interpolation";
+constexpr const char* kPairedSolvers[] = {"gim", "weighted_pia", "local_pia", "extended_pia",
+                                          "preconditioned_pia"};
 // The square root of the gap is the error; below this gap it is rounding.
 constexpr double kLeastGap = 1e-26;
 constexpr int kFewest = 6;
@@ -83,14 +87,20 @@ bool RunOrders(const ExperimentRun& run, ExperimentTables* tables, std::string* 
   CsvTable& traces = (*tables)["traces"] = CsvTable(TraceColumns());
   CsvTable& rates = (*tables)["rates"] =
       CsvTable({"problem", "solver", "iterations", "first_factor", "last_factor", "order"});
+  std::vector<std::string> problems(std::begin(kProblems), std::end(kProblems));
+  problems.emplace_back(kThrough);
   double done = 0.0;
-  for (const char* name : kProblems) {
-    if (run.progress) run.progress(done / std::size(kProblems), name);
+  for (const std::string& name : problems) {
+    if (run.progress) run.progress(done / static_cast<double>(problems.size()), name);
     done += 1.0;
     std::shared_ptr<const Problem> problem = CatalogueProblem(name, error);
     if (problem == nullptr) return false;
     ProblemRuns on(name, problem, run.repetitions);
-    for (const char* solver : kSolvers) {
+    std::vector<std::string> solvers(std::begin(kSolvers), std::end(kSolvers));
+    if (name == kThrough) {
+      solvers.insert(solvers.end(), std::begin(kPairedSolvers), std::end(kPairedSolvers));
+    }
+    for (const std::string& solver : solvers) {
       if (InterruptRequested()) return true;
       on.Run(solver, NativeSpec(1e-6), &runs);
       on.Run(solver, RaceSpec(1e-13), &runs, &traces);
@@ -104,7 +114,7 @@ bool RunOrders(const ExperimentRun& run, ExperimentTables* tables, std::string* 
 std::vector<double> TimesSlower(const ExperimentTables& tables, const std::string& solver) {
   std::vector<double> ratios;
   const CsvTable native = tables.at("").Where("mode", "native");
-  for (const std::string& problem : native.Distinct("problem")) {
+  for (const char* problem : kProblems) {
     const CsvTable on = native.Where("problem", problem);
     const CsvTable slow = on.Where("solver", solver);
     const CsvTable fast = on.Where("solver", "lbfgs");
@@ -208,7 +218,10 @@ Experiment AcceleratedGimOrder() {
   experiment.name = "order";
   experiment.title = "Speed, rate and order of every method";
   experiment.text =
-      "The four outlines by every method of the family, to |g| <= 1e-13 |g(start)| (race) and by "
+      "The four outlines by every method of the family, and the rhinoceros through all its points "
+      "by "
+      "those that need as many control points as points too, to |g| <= 1e-13 |g(start)| (race) and "
+      "by "
       "the "
       "native rules. The error is the root of the gap, computed without cancellation. Its mean "
       "factor per iteration over the first and the last third tells a linear method (equal) from a "
