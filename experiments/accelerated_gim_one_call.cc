@@ -11,6 +11,7 @@ namespace {
 
 // Distance from the direct answer nearest to the start, over the data's size, that counts as equal.
 constexpr double kEqual = 1e-6;
+constexpr int kProblems = 4;
 
 struct Case {
   std::string name;
@@ -91,9 +92,10 @@ Judgement JudgeOneCall(const ExperimentTables& tables) {
                       " problems, and is at the direct answer nearest to the "
                       "start, to 1e-6 of the size, on " +
                       std::to_string(nearest) + " (the farthest is " + NumberText(worst) + " away)";
-  judgement.verdict = solved == all && nearest == all ? ClaimVerdict::kHolds
-                      : solved == all                 ? ClaimVerdict::kInPart
-                                                      : ClaimVerdict::kDoesNotHold;
+  judgement.verdict = solved < all      ? ClaimVerdict::kDoesNotHold
+                      : all < kProblems ? ClaimVerdict::kUndecided
+                      : nearest == all  ? ClaimVerdict::kHolds
+                                        : ClaimVerdict::kInPart;
   return judgement;
 }
 

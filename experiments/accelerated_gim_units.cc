@@ -47,10 +47,11 @@ bool RunUnits(const ExperimentRun& run, ExperimentTables* tables, std::string* e
   return true;
 }
 
-/// Least and most iterations of `solver` on `problem` by `rule` over the units, and how many runs
-/// did not end by it.
+/// Least and most iterations of `solver` on `problem` by `rule` over the units, how many runs have
+/// a count, and how many of the runs did not end by the rule.
 struct Spread {
   double least = 0.0, most = 0.0;
+  int runs = 0;
   int missed = 0;
 };
 
@@ -61,7 +62,9 @@ Spread SpreadOf(const ExperimentTables& tables, const char* problem, const char*
   Spread spread;
   for (std::size_t row = 0; row < rows.num_rows(); ++row) {
     const double count = rows.Number(row, "iterations");
-    spread.least = row == 0 ? count : std::min(spread.least, count);
+    if (std::isnan(count)) continue;
+    spread.least = spread.runs == 0 ? count : std::min(spread.least, count);
+    ++spread.runs;
     spread.most = std::max(spread.most, count);
     const std::string& status = rows.Text(row, "status");
     spread.missed += status == "gradient_small" || status == "step_small" ? 0 : 1;
@@ -75,15 +78,16 @@ std::string Text(const char* solver, const Spread& spread) {
 
 Judgement JudgeUnits(const ExperimentTables& tables) {
   Judgement judgement;
-  if (tables.at("").num_rows() == 0) return judgement;
   const Spread lspia = SpreadOf(tables, "rhino", "step or |g| < 1e-6", "lspia");
   const Spread coarse = SpreadOf(tables, "rhino", "step or |g| < 1e-6", "lbfgs");
   const Spread fine = SpreadOf(tables, "rhino", "|g| < 1e-10", "lbfgs");
   const Spread race = SpreadOf(tables, "rhino", "race", "lbfgs");
+  // One unit cannot show a dependence on it.
+  if (std::min({lspia.runs, coarse.runs, fine.runs}) < 2) return judgement;
   judgement.because =
       "rhinoceros in units from 1e-3 to 1e6: " + Text("lspia", lspia) + " iterations, " +
       Text("lbfgs to 1e-6", coarse) + ", " + Text("to 1e-10", fine) + " (" +
-      std::to_string(fine.missed) + " of " + std::to_string(std::size(kFactors)) +
+      std::to_string(fine.missed) + " of " + std::to_string(fine.runs) +
       " end at the rounding floor above it); by the race's relative rule " + Text("lbfgs", race);
   // A tenth, and the 1 that rounding can make.
   const auto is_steady = [](const Spread& spread) {

@@ -190,27 +190,33 @@ TEST(AcceleratedGim, JudgesRatesAgainstTheSpectrum) {
 }
 
 TEST(AcceleratedGim, JudgesOneCall) {
-  const auto runs = [](const char* status, const char* distance) {
+  const auto runs = [](const char* status, const char* distance, int problems = 4) {
     ExperimentTables tables;
     CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"distance_to_direct"}));
-    Add({{"distance_to_direct", distance},
-         {"mode", "race"},
-         {"solver", "lbfgs"},
-         {"status", status}},
-        &table);
+    for (int problem = 0; problem < problems; ++problem) {
+      Add({{"distance_to_direct", distance},
+           {"mode", "race"},
+           {"solver", "lbfgs"},
+           {"status", status}},
+          &table);
+    }
     return tables;
   };
   const Experiment experiment = AcceleratedGimOneCall();
   EXPECT_EQ(Verdict(experiment, runs("gradient_small", "1e-9")), kHolds);
   EXPECT_EQ(Verdict(experiment, runs("gradient_small", "7.4")), kInPart);
   EXPECT_EQ(Verdict(experiment, runs("iteration_limit", "1e-9")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, runs("iteration_limit", "1e-9", 1)), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, runs("gradient_small", "1e-9", 3)), kUndecided);
+  EXPECT_EQ(Verdict(experiment, runs("gradient_small", "1e-9", 0)), kUndecided);
 }
 
 TEST(AcceleratedGim, JudgesTheLargestResidual) {
   const auto residuals = [](const char* rhino, const char* cat) {
     ExperimentTables tables;
     CsvTable& table = tables[""] = CsvTable(RunColumnsBehind({"largest", "rms"}));
-    for (const auto& [problem, reached] : {std::pair("rhino", rhino), {"cat", cat}}) {
+    for (const auto& [problem, reached] :
+         {std::pair("rhino", rhino), {"squirrel", rhino}, {"dolphin", rhino}, {"cat", cat}}) {
       Add({{"largest", reached}, {"problem", problem}, {"solver", "lspia"}}, &table);
       Add({{"largest", "1"}, {"problem", problem}, {"solver", "lawson"}}, &table);
     }
@@ -220,6 +226,9 @@ TEST(AcceleratedGim, JudgesTheLargestResidual) {
   EXPECT_EQ(Verdict(experiment, residuals("1.005", "1")), kHolds);
   EXPECT_EQ(Verdict(experiment, residuals("1.005", "1.4")), kInPart);
   EXPECT_EQ(Verdict(experiment, residuals("1.3", "1.4")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, residuals("1.005", "nan")), kUndecided);
+  EXPECT_EQ(Verdict(experiment, residuals("1.3", "nan")), kUndecided);
+  EXPECT_EQ(Verdict(experiment, residuals("nan", "nan")), kUndecided);
 }
 
 TEST(AcceleratedGim, JudgesStopRulesInOtherUnits) {
@@ -249,6 +258,9 @@ TEST(AcceleratedGim, JudgesStopRulesInOtherUnits) {
   EXPECT_EQ(Verdict(experiment, units("50", "52", "55", "rounding_floor")), kInPart);
   EXPECT_EQ(Verdict(experiment, units("90", "52", "99", "gradient_small")), kInPart);
   EXPECT_EQ(Verdict(experiment, units("90", "99", "99", "gradient_small")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, units("nan", "52", "55", "gradient_small")), kUndecided);
+  EXPECT_EQ(Verdict(experiment, {{"", CsvTable(RunColumnsBehind({"factor", "rule"}))}}),
+            kUndecided);
 }
 
 TEST(AcceleratedGim, JudgesWhetherIteratingPays) {
