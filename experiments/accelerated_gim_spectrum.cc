@@ -143,7 +143,7 @@ Judgement JudgeRates(const ExperimentTables& tables) {
       }
       if (std::isnan(measured) || std::isnan(predicted)) continue;
       ++judged;
-      const double error = std::abs(std::log(measured) / std::log(predicted) - 1.0);
+      const double error = std::abs(std::log(predicted) / std::log(measured) - 1.0);
       worst = std::max(worst, error);
       agree += error <= kTolerance ? 1 : 0;
     }
@@ -227,7 +227,7 @@ Experiment AcceleratedGimSpectrum() {
        &JudgeRates}};
   experiment.figures = {{"spectrum_rates",
                          "Left: measured against predicted rates. Right: what the spectral radius "
-                         "does to GIM and hardly to L-BFGS and CG.",
+                         "does to GIM, less to L-BFGS and hardly to CG.",
                          2, &PredictedAgainstMeasured}};
   return experiment;
 }

@@ -1,7 +1,8 @@
 #include "solvers/anderson.h"
 
-#include <Eigen/QR>
 #include <cmath>
+
+#include "solvers/basic_solution.h"
 
 namespace batten {
 namespace {
@@ -93,10 +94,7 @@ Eigen::VectorXd AndersonSolver::Accelerated() const {
     lengths[k] = column.norm();
     columns.col(k) = lengths[k] > 0.0 ? Eigen::VectorXd(column / lengths[k]) : column;
   }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns.rows(), columns.cols());
-  qr.setThreshold(kDependent);
-  qr.compute(columns);
-  const Eigen::VectorXd gamma = qr.solve(move_);
+  const Eigen::VectorXd gamma = BasicSolution(columns, move_, kDependent);
   Eigen::VectorXd x = image_;
   for (Eigen::Index k = 0; k < count; ++k) {
     if (lengths[k] == 0.0) continue;

@@ -44,7 +44,9 @@ std::optional<Outcome> JacobiPiaSolver::DoStart(Eigen::VectorXd* x) {
     const double l1 = ReportSpectrum(scaled, context()->seed()).largest;
     context()->Note("w", NumberText(weight));
     context()->Note("largest w that converges", NumberText(2.0 / l1));
-    if (weight * l1 >= 2.0) {
+    // The bound itself, as far as rounding can tell, turns about for ever.
+    constexpr double kRounding = 1e-9;
+    if (weight * l1 >= 2.0 * (1.0 - kRounding)) {
       WarnOfDivergence("w = " + NumberText(weight) + " is not below " + NumberText(2.0 / l1) +
                        ", 2 / the largest eigenvalue of diag(A'A)^-1 A'A; w=0 chooses a safe one");
     }

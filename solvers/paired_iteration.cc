@@ -141,7 +141,9 @@ std::optional<Outcome> PairedIteration::DoStart(Eigen::VectorXd* /*x*/) {
     const double radius = SpectralRadius();
     const std::string name = "spectral radius of " + MatrixName();
     context()->Note(name, NumberText(radius));
-    if (radius >= 1.0) WarnOfDivergence("the " + name + " is " + NumberText(radius));
+    // Of a singular A the radius is 1, which rounding may put below.
+    constexpr double kRounding = 1e-9;
+    if (radius >= 1.0 - kRounding) WarnOfDivergence("the " + name + " is " + NumberText(radius));
   });
   return std::nullopt;
 }

@@ -1,8 +1,9 @@
 #include "solvers/preconditioned_pia.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <map>
+
+#include "solvers/basic_solution.h"
 
 namespace batten {
 namespace {
@@ -40,7 +41,10 @@ Eigen::VectorXd InverseRow(const SparseRowMajor& a, int j, const std::vector<int
     }
   }
   const Eigen::VectorXd unit = Eigen::VectorXd::Unit(transposed.rows(), 0);
-  Eigen::VectorXd row = transposed.colPivHouseholderQr().solve(unit);
+  // Where A is singular so can this be: columns that depend on others to kDependent get nothing,
+  // instead of what rounding makes of them.
+  constexpr double kDependent = 1e-10;
+  Eigen::VectorXd row = BasicSolution(transposed, unit, kDependent);
   *distance = (unit - transposed * row).lpNorm<1>();
   return row;
 }

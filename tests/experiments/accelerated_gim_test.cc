@@ -185,6 +185,9 @@ TEST(AcceleratedGim, JudgesRatesAgainstTheSpectrum) {
   EXPECT_EQ(Verdict(experiment, rates("0.51", "0.49")), kHolds);
   EXPECT_EQ(Verdict(experiment, rates("0.51", "0.6")), kInPart);
   EXPECT_EQ(Verdict(experiment, rates("0.6", "0.6")), kDoesNotHold);
+  // Iterations per digit 4.9 % below and 5.1 % above the predicted ones.
+  EXPECT_EQ(Verdict(experiment, rates("0.4824", "0.4824")), kHolds);
+  EXPECT_EQ(Verdict(experiment, rates("0.5171", "0.5171")), kDoesNotHold);
   EXPECT_EQ(Verdict(experiment, rates("0.51", "0.49", "diverged")), kInPart);
   EXPECT_EQ(Verdict(experiment, rates("nan", "nan")), kUndecided);
 }

@@ -225,5 +225,22 @@ TEST(PreconditionedPia, ConvergesWhereItsCertificateIsBelowOne) {
   EXPECT_GT(certified, 6);
 }
 
+TEST(PairedIteration, WarnsWhereTwoPointsOnOneParameterMakeTheMatrixSingular) {
+  FitSpec spec = MakeSpec(3, true, 40);
+  DataSet data = WithoutWeights(MakeNoisyLoop(40, 2, 9));
+  data.parameters = Eigen::VectorXd(40);
+  for (int i = 0; i < 40; ++i) (*data.parameters)[i] = (i == 11 ? 10 : i) / 40.0;
+  spec.parameters.reset();
+  spec.domain = {0.0, 1.0};
+  const auto problem = MakeFit(data, spec);
+  for (const char* solver :
+       {"gim", "weighted_pia", "local_pia", "preconditioned_pia", "preconditioned_pia/half_width=1",
+        "preconditioned_pia/half_width=8"}) {
+    const SolverTrial trial(*problem, solver, {200});
+    EXPECT_EQ(trial.context.notes().count("may not converge"), 1U) << solver;
+    EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << solver;
+  }
+}
+
 }  // namespace
 }  // namespace batten
