@@ -10,13 +10,13 @@ Reproduction AcceleratedGim() {
       "\"Accelerated Geometric Iteration Method\" (Liu, Xin, Shu, Chen, Zhang, Zhao, 2016)";
   reproduction.introduction =
       "The paper minimises E(P) = sum |Q_i - sum P_j B_j(t_i)|^2 by L-BFGS and compares it with "
-      "the "
-      "geometric iteration (GIM; LSPIA where there are more points than control points). Uniform "
+      "the geometric iteration (GIM; LSPIA where there are more points than control points). "
+      "Uniform "
       "cubics, uniform parameters. *Native* runs stop as the paper's do: GIM and LSPIA when no "
       "control point moves by 1e-6, L-BFGS when |g| < 1e-6 or 1e-10. *Race* runs all stop by one "
       "rule, |g| <= 1e-10 |g(start)| unless the experiment says otherwise. The outlines are not "
-      "the paper's own, which are not public: "
-      "they have its numbers of points and control points. Every verdict is computed from the CSV "
+      "the paper's own, which are not public: they have its numbers of points and control points. "
+      "Every verdict is computed from the CSV "
       "files beside this page by the rule stated with it.";
   reproduction.experiments = {AcceleratedGimFigure1(),
                               AcceleratedGimOutlines(),

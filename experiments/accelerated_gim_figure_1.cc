@@ -35,10 +35,7 @@ std::shared_ptr<const Problem> NinePoints(double offset) {
   spec.control_points = kNumPoints;
   spec.parameters.reset();
   spec.domain = {0.0, 1.0};
-  std::string error;
-  std::shared_ptr<const Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
-  CHECK(problem != nullptr) << error;
-  return problem;
+  return CheckedFit(std::move(data), std::move(spec));
 }
 
 bool RunOffsets(const ExperimentRun& run, ExperimentTables* tables, std::string* /*error*/) {

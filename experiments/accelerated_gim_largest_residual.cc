@@ -37,9 +37,8 @@ Residuals Lawson(const Problem& problem) {
   for (int k = 0; k < kIterations && !InterruptRequested(); ++k) {
     DataSet data = fit.data();
     data.weights = weights;
+    const std::shared_ptr<const Problem> weighted = CheckedFit(std::move(data), fit.spec());
     std::string error;
-    const std::unique_ptr<Problem> weighted = MakeFitProblem(std::move(data), fit.spec(), &error);
-    CHECK(weighted != nullptr) << error;
     RunResult run;
     NameSpec solver;
     solver.name = "banded_qr";
@@ -123,7 +122,7 @@ Judgement JudgeLargest(const ExperimentTables& tables) {
     least += reached <= 1.01 * found ? 1 : 0;
     judgement.because +=
         (judgement.because.empty() ? "the largest residual that lspia ends at is " : ", ") +
-        NumberText(std::round(100.0 * reached / found) / 100.0) + " (" + outline + ")";
+        Rounded(reached / found, 2) + " (" + outline + ")";
   }
   if (judged == 0) return judgement;
   judgement.because +=

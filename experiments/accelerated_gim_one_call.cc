@@ -20,26 +20,15 @@ struct Case {
 
 /// The rhinoceros with points 10 and 11 on one parameter.
 std::shared_ptr<const Problem> WithTwoOnOneParameter(const Problem& outline) {
-  DataSet data = outline.curve_fit()->data();
-  data.parameters = outline.curve_fit()->parameters();
-  (*data.parameters)[11] = (*data.parameters)[10];
-  FitSpec spec = outline.curve_fit()->spec();
-  spec.parameters.reset();
-  spec.domain = {0.0, 1.0};
-  std::string error;
-  std::shared_ptr<const Problem> problem = MakeFitProblem(std::move(data), spec, &error);
-  CHECK(problem != nullptr) << error;
-  return problem;
+  Eigen::VectorXd t = outline.curve_fit()->parameters();
+  t[11] = t[10];
+  return AtParameters(outline, t);
 }
 
 std::shared_ptr<const Problem> WithControlPoints(const Problem& outline, int n) {
   FitSpec spec = outline.curve_fit()->spec();
   spec.control_points = n;
-  std::string error;
-  std::shared_ptr<const Problem> problem =
-      MakeFitProblem(outline.curve_fit()->data(), spec, &error);
-  CHECK(problem != nullptr) << error;
-  return problem;
+  return CheckedFit(outline.curve_fit()->data(), spec);
 }
 
 bool RunCases(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {

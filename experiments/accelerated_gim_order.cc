@@ -125,18 +125,16 @@ std::vector<double> TimesSlower(const ExperimentTables& tables, const std::strin
   return ratios;
 }
 
-std::string OneDigit(double value) { return NumberText(std::round(10.0 * value) / 10.0); }
-
 Judgement JudgeTens(const ExperimentTables& tables) {
   const std::vector<double> ratios = TimesSlower(tables, "lspia");
   Judgement judgement;
   if (ratios.empty()) return judgement;
   const double least = *std::min_element(ratios.begin(), ratios.end());
   const double most = *std::max_element(ratios.begin(), ratios.end());
-  judgement.because = "lspia takes " + OneDigit(least) + " to " + OneDigit(most) +
+  judgement.because = "lspia takes " + Rounded(least, 1) + " to " + Rounded(most, 1) +
                       " times as long as lbfgs by the native rules; cg takes " +
-                      OneDigit(Median(TimesSlower(tables, "cg"))) + ", newton " +
-                      OneDigit(Median(TimesSlower(tables, "newton"))) + " times lbfgs (medians)";
+                      Rounded(Median(TimesSlower(tables, "cg")), 1) + ", newton " +
+                      Rounded(Median(TimesSlower(tables, "newton")), 1) + " times lbfgs (medians)";
   judgement.verdict = least >= 10.0  ? ClaimVerdict::kHolds
                       : most >= 10.0 ? ClaimVerdict::kInPart
                                      : ClaimVerdict::kDoesNotHold;
@@ -157,9 +155,8 @@ Judgement JudgeSuperlinear(const ExperimentTables& tables) {
     judgement.because += (judgement.because.empty() ? "mean factor of the error, first and last "
                                                       "third: "
                                                     : "; ") +
-                         rates.Text(row, "problem") + " " +
-                         NumberText(std::round(100.0 * first) / 100.0) + " and " +
-                         NumberText(std::round(100.0 * last) / 100.0);
+                         rates.Text(row, "problem") + " " + Rounded(first, 2) + " and " +
+                         Rounded(last, 2);
   }
   if (judged == 0) return judgement;
   judgement.verdict = superlinear == judged ? ClaimVerdict::kHolds

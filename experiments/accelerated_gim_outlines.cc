@@ -103,9 +103,8 @@ Judgement JudgeRatios(const ExperimentTables& tables, const std::string& column,
     if (std::isnan(ratio)) return judgement;
     agree += ratio >= 0.5 * published(row) ? 1 : 0;
     fewer += ratio > 1.0 ? 1 : 0;
-    const auto one_digit = [](double value) { return NumberText(std::round(10.0 * value) / 10.0); };
     judgement.because += (judgement.because.empty() ? "ratios " : "; ") + std::string(row.problem) +
-                         " " + one_digit(ratio) + " (paper " + one_digit(published(row)) + ")";
+                         " " + Rounded(ratio, 1) + " (paper " + Rounded(published(row), 1) + ")";
   }
   const int all = static_cast<int>(std::size(kTable1));
   judgement.verdict = agree == all ? ClaimVerdict::kHolds

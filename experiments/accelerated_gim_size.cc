@@ -84,11 +84,8 @@ Judgement JudgeGrowth(const ExperimentTables& tables) {
   const double seconds = Slope(tables, "seconds");
   Judgement judgement;
   if (std::isnan(iterations) || std::isnan(seconds)) return judgement;
-  const auto two_digits = [](double value) {
-    return NumberText(std::round(100.0 * value) / 100.0 + 0.0);
-  };
   judgement.because = "over the sizes the ratio lspia / lbfgs of iterations goes like n^" +
-                      two_digits(iterations) + ", that of times like n^" + two_digits(seconds);
+                      Rounded(iterations, 2) + ", that of times like n^" + Rounded(seconds, 2);
   const bool both = iterations > kGrows && seconds > kGrows;
   const bool one = iterations > kGrows || seconds > kGrows;
   judgement.verdict = both  ? ClaimVerdict::kHolds

@@ -21,10 +21,7 @@ struct Parameters {
 Eigen::VectorXd Rule(const Problem& outline, Parameterization rule) {
   FitSpec spec = outline.curve_fit()->spec();
   spec.parameters = rule;
-  std::string error;
-  const auto problem = MakeFitProblem(outline.curve_fit()->data(), spec, &error);
-  CHECK(problem != nullptr) << error;
-  return problem->curve_fit()->parameters();
+  return CheckedFit(outline.curve_fit()->data(), spec)->curve_fit()->parameters();
 }
 
 /// From uniform to such as no author would choose: offsets, random shifts, and points crowded by
@@ -87,18 +84,6 @@ double PredictedRate(const RunResult& run) {
   return std::nan("");
 }
 
-std::shared_ptr<const Problem> WithParameters(const Problem& outline, const Eigen::VectorXd& t) {
-  DataSet data = outline.curve_fit()->data();
-  data.parameters = t;
-  FitSpec spec = outline.curve_fit()->spec();
-  spec.parameters.reset();
-  spec.domain = {0.0, 1.0};
-  std::string error;
-  std::shared_ptr<const Problem> problem = MakeFitProblem(std::move(data), spec, &error);
-  CHECK(problem != nullptr) << error;
-  return problem;
-}
-
 bool RunParameters(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
   CsvTable& runs = (*tables)[""] =
       CsvTable(RunColumnsBehind({"parameters", "predicted_rate", "measured_rate"}));
@@ -109,7 +94,7 @@ bool RunParameters(const ExperimentRun& run, ExperimentTables* tables, std::stri
   for (const Parameters& parameters : all) {
     if (run.progress) run.progress(done / static_cast<double>(all.size()), parameters.name);
     done += 1.0;
-    ProblemRuns on("rhino_interpolation", WithParameters(*outline, parameters.values),
+    ProblemRuns on("rhino_interpolation", AtParameters(*outline, parameters.values),
                    run.repetitions);
     for (const RunSpec& spec : {NativeSpec(1e-6), RaceSpec(0.0)}) {
       for (const char* solver : {"gim", "weighted_pia", "lspia/step=optimal", "lbfgs", "cg"}) {
@@ -153,7 +138,7 @@ Judgement JudgeRates(const ExperimentTables& tables) {
       std::to_string(agree) + " of " + std::to_string(judged) +
       " numbers of iterations per digit are within 5 % of the predicted one, the worst is "
       "off by " +
-      NumberText(std::round(1000.0 * worst) / 10.0) + " %; " + std::to_string(foretold) + " of " +
+      Rounded(100.0 * worst, 1) + " %; " + std::to_string(foretold) + " of " +
       std::to_string(diverged) + " divergences had a spectral radius of 1 or more";
   judgement.verdict = agree == judged && foretold == diverged ? ClaimVerdict::kHolds
                       : 2 * agree >= judged                   ? ClaimVerdict::kInPart

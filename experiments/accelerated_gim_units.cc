@@ -14,11 +14,7 @@ constexpr double kFactors[] = {1e-3, 1.0, 10.0, 1e3, 1e6};
 std::shared_ptr<const Problem> InOtherUnits(const Problem& outline, double factor) {
   DataSet data = outline.curve_fit()->data();
   data.points *= factor;
-  std::string error;
-  std::shared_ptr<const Problem> problem =
-      MakeFitProblem(std::move(data), outline.curve_fit()->spec(), &error);
-  CHECK(problem != nullptr) << error;
-  return problem;
+  return CheckedFit(std::move(data), outline.curve_fit()->spec());
 }
 
 bool RunUnits(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {

@@ -64,8 +64,7 @@ void RunWarm(int repetitions, CsvTable* table) {
     DataSet data = fit.data();
     const Eigen::VectorXd noise = RandomStart(data.points.size(), 7);
     data.points += moved * kSize * Eigen::Map<const Points>(noise.data(), data.points.rows(), 2);
-    std::shared_ptr<const Problem> now = MakeFitProblem(std::move(data), fit.spec(), &error);
-    CHECK(now != nullptr) << error;
+    const std::shared_ptr<const Problem> now = CheckedFit(std::move(data), fit.spec());
     ProblemRuns on("loop", now, repetitions);
     const std::string setting = "moved by " + NumberText(moved);
     AddRun(kWarm, setting + " (direct)", kCholesky, RaceSpec(1e-10), &on, table);
@@ -144,13 +143,11 @@ Judgement JudgeReason(const ExperimentTables& tables, const std::string& reason,
     worst = std::max(worst, times);
     if (times >= best) continue;
     best = times;
-    judgement.because = rows.Text(row, "solver") + ", " + setting + ": " +
-                        NumberText(std::round(100.0 * times) / 100.0) +
+    judgement.because = rows.Text(row, "solver") + ", " + setting + ": " + Rounded(times, 2) +
                         " times banded_cholesky's time";
   }
   if (worst == 0.0) return judgement;
-  judgement.because += "; the slowest of this kind takes " +
-                       NumberText(std::round(100.0 * worst) / 100.0) + " times";
+  judgement.because += "; the slowest of this kind takes " + Rounded(worst, 2) + " times";
   judgement.verdict = worst < 1.0  ? ClaimVerdict::kHolds
                       : best < 1.0 ? ClaimVerdict::kInPart
                                    : ClaimVerdict::kDoesNotHold;

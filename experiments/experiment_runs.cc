@@ -119,6 +119,27 @@ std::shared_ptr<const Problem> CatalogueProblem(const std::string& name, std::st
   return LoadProblem(entry, error);
 }
 
+std::shared_ptr<const Problem> CheckedFit(DataSet data, FitSpec spec) {
+  std::string error;
+  std::shared_ptr<const Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
+  CHECK(problem != nullptr) << error;
+  return problem;
+}
+
+std::shared_ptr<const Problem> AtParameters(const Problem& outline, const Eigen::VectorXd& t) {
+  DataSet data = outline.curve_fit()->data();
+  data.parameters = t;
+  FitSpec spec = outline.curve_fit()->spec();
+  spec.parameters.reset();
+  spec.domain = {0.0, 1.0};
+  return CheckedFit(std::move(data), std::move(spec));
+}
+
+std::string Rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return NumberText(std::round(scale * value) / scale + 0.0);  // + 0.0: no negative zero
+}
+
 std::shared_ptr<const Problem> LoopProblem(int m, int n, double size) {
   constexpr double kNoise = 0.01;
   constexpr std::uint64_t kSeed = 20161201;
@@ -138,10 +159,7 @@ std::shared_ptr<const Problem> LoopProblem(int m, int n, double size) {
   spec.name = "loop";
   spec.closed = true;
   spec.control_points = n;
-  std::string error;
-  std::shared_ptr<const Problem> problem = MakeFitProblem(std::move(data), std::move(spec), &error);
-  CHECK(problem != nullptr) << error;
-  return problem;
+  return CheckedFit(std::move(data), std::move(spec));
 }
 
 }  // namespace batten

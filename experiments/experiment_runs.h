@@ -54,6 +54,15 @@ RunSpec RaceSpec(double tolerance);
 /// A problem of the catalogue. Null with one sentence in `error`.
 std::shared_ptr<const Problem> CatalogueProblem(const std::string& name, std::string* error);
 
+/// The fit of `data` that an experiment has put together itself; one that cannot be made is our
+/// bug: CHECK.
+std::shared_ptr<const Problem> CheckedFit(DataSet data, FitSpec spec);
+/// The fit of `outline` with its points at parameters t in [0, 1].
+std::shared_ptr<const Problem> AtParameters(const Problem& outline, const Eigen::VectorXd& t);
+
+/// For sentences: rounded to so many decimals, without zeros at the end.
+std::string Rounded(double value, int decimals);
+
 /// m points of a closed curve without symmetry, with noise of 1 % of its size from a fixed seed;
 /// its longest side is `size`. Uniform parameters, closed uniform cubic with n control points.
 std::shared_ptr<const Problem> LoopProblem(int m, int n, double size);

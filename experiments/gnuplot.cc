@@ -206,4 +206,8 @@ std::string GnuplotNumbers(const std::vector<double>& values) {
   return line + "\n";
 }
 
+bool IsWriteError(const FigureResult& figure) {
+  return !figure.drawn && figure.message.compare(0, 12, "cannot write") == 0;
+}
+
 }  // namespace batten

@@ -24,6 +24,9 @@ struct FigureResult {
 FigureResult DrawFigure(const std::string& stem, const std::string& data,
                         const std::string& commands, int width, int height, FileBatch* batch);
 
+/// The disk's fault and not that of gnuplot, without which the script and data still serve.
+bool IsWriteError(const FigureResult& figure);
+
 /// Where there is nothing to draw: an older figure, which would show something else, goes.
 FigureResult NoFigure(const std::string& stem, const std::string& why, FileBatch* batch);
 

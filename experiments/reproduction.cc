@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "experiments/accelerated_gim.h"
@@ -10,6 +9,7 @@
 #include "experiments/build_info.h"
 #include "experiments/reproduction_page.h"
 #include "experiments/run.h"
+#include "problems/input_file.h"
 
 namespace batten {
 namespace {
@@ -29,30 +29,22 @@ std::string TableFile(const Experiment& experiment, const std::string& table) {
   return experiment.name + (table.empty() ? "" : "_" + table) + ".csv";
 }
 
-bool ReadFile(const std::string& path, std::string* text) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream contents;
-  contents << file.rdbuf();
-  *text = contents.str();
-  return static_cast<bool>(file);
-}
-
 /// The names of the tables stand in the main one's second line.
 bool TakeOver(const Reproduction& reproduction, const Experiment& experiment,
               const ReproductionSpec& spec, ExperimentTables* tables) {
   const std::string stamp = Stamp(reproduction, experiment, spec);
-  std::string text;
-  if (!ReadFile(InFolder(spec, TableFile(experiment, "")), &text)) return false;
+  std::string text, error;
+  if (!ReadWholeFile(InFolder(spec, TableFile(experiment, "")), &text, &error)) return false;
   std::istringstream lines(text);
   std::string first, second;
   std::getline(lines, first);
   std::getline(lines, second);
   if (first != stamp || second.rfind("# tables:", 0) != 0) return false;
   std::istringstream names(second.substr(9));
-  std::string name, error;
+  std::string name;
   if (!CsvTable::FromCsv(text, &(*tables)[""], &error)) return false;
   while (names >> name) {
-    if (!ReadFile(InFolder(spec, TableFile(experiment, name)), &text) ||
+    if (!ReadWholeFile(InFolder(spec, TableFile(experiment, name)), &text, &error) ||
         text.rfind(stamp + "\n", 0) != 0 || !CsvTable::FromCsv(text, &(*tables)[name], &error)) {
       return false;
     }
@@ -77,7 +69,7 @@ bool DrawFigures(const ReproductionSpec& spec, ExperimentResult* result, FileBat
   for (const ExperimentFigure& figure : result->experiment->figures) {
     const FigureResult drawn =
         DrawPlot(InFolder(spec, figure.name), figure.panels(result->tables), figure.columns, batch);
-    if (drawn.message.rfind("cannot write", 0) == 0) {
+    if (IsWriteError(drawn)) {
       *error = drawn.message;
       return false;
     }

@@ -4,13 +4,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "cost_functions/options.h"
 #include "experiments/atomic_file.h"
 #include "experiments/build_info.h"
 #include "experiments/short_number.h"
+#include "problems/input_file.h"
 
 namespace batten {
 namespace {
@@ -73,13 +72,6 @@ std::string FileNames(const ExperimentResult& result) {
   return text + ".\n\n";
 }
 
-std::string ReadPicture(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream contents;
-  contents << file.rdbuf();
-  return file ? contents.str() : "";
-}
-
 /// As a data address: what has a meaning in addresses or in HTML is written as %NN.
 std::string DataAddress(const std::string& svg) {
   constexpr char kHex[] = "0123456789ABCDEF";
@@ -106,8 +98,10 @@ std::string WithPicturesPutIn(const std::string& html, const std::string& folder
     const std::size_t name = found + mark.size();
     const std::size_t end = html.find('"', name);
     const std::string file = html.substr(name, end - name);
-    const std::string picture = ReadPicture((std::filesystem::path(folder) / file).string());
-    text += html.substr(begin, name - begin) + (picture.empty() ? file : DataAddress(picture));
+    const std::string path = (std::filesystem::path(folder) / file).string();
+    std::string picture, error;
+    const bool is_there = ReadWholeFile(path, &picture, &error);
+    text += html.substr(begin, name - begin) + (is_there ? DataAddress(picture) : file);
     begin = end;
   }
 }

@@ -81,12 +81,4 @@ Status CurveView::NormalResidual(const Eigen::VectorXd& x, Eigen::VectorXd* resi
   return residual->allFinite() ? Status::kOk : Status::kNonFinite;
 }
 
-Status CurveView::Sweep(const BandSweep& sweep, double relaxation, const Eigen::VectorXd& x,
-                        Eigen::VectorXd* swept) {
-  if (!Allow(&x)) return Status::kStop;
-  *swept = x;
-  sweep.Sweep(relaxation, swept->data());
-  return swept->allFinite() ? Status::kOk : Status::kNonFinite;
-}
-
 }  // namespace batten

@@ -6,7 +6,6 @@
 
 #include "problems/evaluation_monitor.h"
 #include "problems/problem.h"
-#include "splines/band_sweep.h"
 #include "splines/banded_rows.h"
 #include "splines/normal_band.h"
 
@@ -40,10 +39,6 @@ class CurveView {
   Status NormalProduct(const Eigen::VectorXd& v, Eigen::VectorXd* product);
   /// residual = A'(Q - A P), from the normal band. Counts one product.
   Status NormalResidual(const Eigen::VectorXd& x, Eigen::VectorXd* residual);
-  /// swept = x after one Gauss-Seidel sweep (BandSweep::Sweep) over normal_band(), which `sweep`
-  /// was made of. Counts one product.
-  Status Sweep(const BandSweep& sweep, double relaxation, const Eigen::VectorXd& x,
-               Eigen::VectorXd* swept);
   /// Counts one product that a method does itself, row by row. False: it must not be done.
   bool AllowProduct(const Eigen::VectorXd& x) { return Allow(&x); }
 

@@ -70,4 +70,12 @@ void LineReader::Fill() {
   at_end_ = !stream_->good();
 }
 
+bool ReadWholeFile(const std::string& path, std::string* contents, std::string* error) {
+  std::ifstream file;
+  if (!OpenInput(path, &file, error)) return false;
+  contents->assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  if (file.bad()) *error = CannotBeRead(path, errno);
+  return !file.bad();
+}
+
 }  // namespace batten

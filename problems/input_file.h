@@ -13,6 +13,10 @@ namespace batten {
 /// Opens `path` to be read as bytes; false with one sentence in `error`, for a folder too.
 bool OpenInput(const std::string& path, std::ifstream* file, std::string* error);
 
+/// All bytes of a file that must be short: a page, a picture, a table. False where OpenInput or
+/// reading fails.
+bool ReadWholeFile(const std::string& path, std::string* contents, std::string* error);
+
 /// `FILE: cannot be read: REASON`.
 std::string CannotBeRead(const std::string& file, int error_number);
 

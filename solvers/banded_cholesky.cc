@@ -20,8 +20,7 @@ SolverInfo BandedCholeskySolver::ClassInfo() {
 }
 
 std::string BandedCholeskySolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "banded_cholesky");
-  return why.empty() ? WhyNoBounds(objective, "banded_cholesky") : why;
+  return WhyNoUnboundedCurveView(objective, "banded_cholesky");
 }
 
 Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* context,

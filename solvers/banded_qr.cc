@@ -45,8 +45,7 @@ SolverInfo BandedQrSolver::ClassInfo() {
 }
 
 std::string BandedQrSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "banded_qr");
-  return why.empty() ? WhyNoBounds(objective, "banded_qr") : why;
+  return WhyNoUnboundedCurveView(objective, "banded_qr");
 }
 
 Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {

@@ -16,8 +16,7 @@ SolverInfo CgSolver::ClassInfo() {
 }
 
 std::string CgSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "cg");
-  return why.empty() ? WhyNoBounds(objective, "cg") : why;
+  return WhyNoUnboundedCurveView(objective, "cg");
 }
 
 Status CgSolver::Refresh(const Eigen::VectorXd& x) {

@@ -25,8 +25,7 @@ SolverInfo JacobiPiaSolver::ClassInfo() {
 JacobiPiaSolver::JacobiPiaSolver(const OptionValues& options) : weight_(options.Real("w")) {}
 
 std::string JacobiPiaSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "jacobi_pia");
-  return why.empty() ? WhyNoBounds(objective, "jacobi_pia") : why;
+  return WhyNoUnboundedCurveView(objective, "jacobi_pia");
 }
 
 std::optional<Outcome> JacobiPiaSolver::DoStart(Eigen::VectorXd* x) {

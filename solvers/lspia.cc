@@ -30,8 +30,7 @@ LspiaSolver::LspiaSolver(const OptionValues& options)
     : step_rule_(options.Word("step")), relaxation_(options.Real("relaxation")) {}
 
 std::string LspiaSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "lspia");
-  return why.empty() ? WhyNoBounds(objective, "lspia") : why;
+  return WhyNoUnboundedCurveView(objective, "lspia");
 }
 
 std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
@@ -136,8 +135,7 @@ BarzilaiBorweinLspiaSolver::BarzilaiBorweinLspiaSolver(const OptionValues& optio
     : relaxation_(options.Real("relaxation")) {}
 
 std::string BarzilaiBorweinLspiaSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "lspia");
-  return why.empty() ? WhyNoBounds(objective, "lspia") : why;
+  return WhyNoUnboundedCurveView(objective, "lspia");
 }
 
 std::optional<Outcome> BarzilaiBorweinLspiaSolver::DoStart(Eigen::VectorXd* /*x*/) {

@@ -18,8 +18,7 @@ SolverInfo NewtonSolver::ClassInfo() {
 }
 
 std::string NewtonSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "newton");
-  return why.empty() ? WhyNoBounds(objective, "newton") : why;
+  return WhyNoUnboundedCurveView(objective, "newton");
 }
 
 std::optional<Outcome> NewtonSolver::DoStart(Eigen::VectorXd* /*x*/) {

@@ -34,8 +34,7 @@ RandomisedPiaSolver::RandomisedPiaSolver(const OptionValues& options)
     : block_size_(options.Integer("block")) {}
 
 std::string RandomisedPiaSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoCurveView(objective, "randomised_pia");
-  return why.empty() ? WhyNoBounds(objective, "randomised_pia") : why;
+  return WhyNoUnboundedCurveView(objective, "randomised_pia");
 }
 
 void RandomisedPiaSolver::MeasureBlocks(const NormalBand& band) {

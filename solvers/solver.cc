@@ -79,4 +79,9 @@ std::string WhyNoBounds(const Objective& objective, const std::string& solver_na
   return objective.problem().has_bounds() ? solver_name + " ignores bounds; use ceres_lm" : "";
 }
 
+std::string WhyNoUnboundedCurveView(const Objective& objective, const std::string& solver_name) {
+  const std::string why = WhyNoCurveView(objective, solver_name);
+  return why.empty() ? WhyNoBounds(objective, solver_name) : why;
+}
+
 }  // namespace batten

@@ -53,6 +53,8 @@ class Solver {
 std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name);
 /// `NAME ignores bounds; use ceres_lm` where the problem has bounds; otherwise empty.
 std::string WhyNoBounds(const Objective& objective, const std::string& solver_name);
+/// The first that is not empty of both: for methods that work on the view and ignore bounds.
+std::string WhyNoUnboundedCurveView(const Objective& objective, const std::string& solver_name);
 
 }  // namespace batten
 

@@ -83,6 +83,11 @@ const SolverInfo* SolverRegistry::Find(const std::string& name) const {
   return found == entries_.end() ? nullptr : &found->second.info;
 }
 
+std::string SolverRegistry::UsualName(const std::string& name) const {
+  const std::string& base = Find(name)->usual_base;
+  return base.empty() ? name : name + ":" + base;
+}
+
 std::unique_ptr<Solver> SolverRegistry::Make(const NameSpec& spec, OptionValues* options_used,
                                              std::string* error) const {
   const auto found = entries_.find(spec.name);

@@ -35,6 +35,8 @@ class SolverRegistry {
   void Remove(const std::string& name);  ///< For solvers that come and go, as in tests.
   std::vector<std::string> Names() const;
   const SolverInfo* Find(const std::string& name) const;  ///< Null for an unknown name.
+  /// What "all solvers" means by a known name: with its usual base where it wraps a solver.
+  std::string UsualName(const std::string& name) const;
   /// A solver for one run and the options it really uses (of the outermost one); null with one
   /// sentence in `error`. `options_used` may be null.
   std::unique_ptr<Solver> Make(const NameSpec& spec, OptionValues* options_used,

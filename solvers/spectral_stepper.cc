@@ -3,9 +3,7 @@
 namespace batten {
 
 std::string SpectralStepper::WhyUnsupported(const Objective& objective) const {
-  const std::string name = Info().name;
-  const std::string why = WhyNoCurveView(objective, name);
-  return why.empty() ? WhyNoBounds(objective, name) : why;
+  return WhyNoUnboundedCurveView(objective, Info().name);
 }
 
 std::optional<Outcome> SpectralStepper::DoStart(Eigen::VectorXd* x) {

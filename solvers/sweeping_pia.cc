@@ -3,9 +3,7 @@
 namespace batten {
 
 std::string SweepingPia::WhyUnsupported(const Objective& objective) const {
-  const std::string name = Info().name;
-  const std::string why = WhyNoCurveView(objective, name);
-  return why.empty() ? WhyNoBounds(objective, name) : why;
+  return WhyNoUnboundedCurveView(objective, Info().name);
 }
 
 std::optional<Outcome> SweepingPia::DoStart(Eigen::VectorXd* /*x*/) {
@@ -15,7 +13,10 @@ std::optional<Outcome> SweepingPia::DoStart(Eigen::VectorXd* /*x*/) {
 }
 
 Status SweepingPia::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
-  return objective()->curve_view()->Sweep(*sweep_, relaxation_, x, g_of_x);
+  if (!objective()->curve_view()->AllowProduct(x)) return Status::kStop;
+  *g_of_x = x;
+  sweep_->Sweep(relaxation_, g_of_x->data());
+  return g_of_x->allFinite() ? Status::kOk : Status::kNonFinite;
 }
 
 std::optional<Outcome> SweepingPia::Inspect(const Eigen::VectorXd& x,

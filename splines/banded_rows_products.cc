@@ -121,35 +121,6 @@ double EvaluateBlock(const RowShape& shape, const RowBlock& block, const double*
   }
 }
 
-/// target = Q - A P on the block's rows, num_rows x dimension.
-template <int kWidth, int kDimension>
-void ResidualsOfBlock(const RowShape& shape, const RowBlock& block, const double* points,
-                      double* target) {
-  if constexpr (kWidth < 0) {
-    RowPack residual[kMaxRowsPerBlock / kPackLanes];
-    const double* value = reinterpret_cast<const double*>(residual);
-    for (int c = 0; c < shape.dimension; ++c) {
-      ResidualOfCoordinate<true>(shape, block, points, c, residual);
-      for (int i = 0; i < block.num_rows; ++i) target[i * shape.dimension + c] = -value[i];
-    }
-  } else {
-    const int packs = block.stride / kPackLanes;
-    const RowPack* a = AsPacks(block.coefficients);
-    const RowPack* q = AsPacks(block.right_hand_sides);
-    for (int i = 0; i * kPackLanes < block.num_rows; ++i) {
-      const int begin = i * kPackLanes;
-      const int count = std::min(kPackLanes, block.num_rows - begin);
-      for (int c = 0; c < kDimension; ++c) {
-        RowPack residual = -q[c * packs + i];
-        for (int j = 0; j < kWidth; ++j) {
-          residual += a[j * packs + i] * Broadcast(points[j * kDimension + c]);
-        }
-        for (int k = 0; k < count; ++k) target[(begin + k) * kDimension + c] = -residual[k];
-      }
-    }
-  }
-}
-
 template <int kWidth, int kDimension, bool kGradient, bool kWithData>
 double EvaluateAll(const BandedRows& rows, const double* points, double* gradient) {
   RowShape shape = rows.shape();
@@ -189,14 +160,17 @@ double BandedRows::SquaredNormOfProduct(const double* v) const {
 
 void BandedRows::Residuals(const double* control_points, double* residuals) const {
   Window window(shape_);
+  RowPack residual[kMaxRowsPerBlock / kPackLanes];
+  const double* value = reinterpret_cast<const double*>(residual);
+  const int d = shape_.dimension;
   for (std::size_t index = 0; index < num_blocks(); ++index) {
     const RowBlock rows = BlockAndPrefetch(index);
     const double* near = window.Gather(control_points, rows.first_column);
-    double* target =
-        residuals + static_cast<std::size_t>(blocks_[index].first_row) * shape_.dimension;
-    WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
-      ResidualsOfBlock<width, dimension>(shape_, rows, near, target);
-    });
+    double* target = residuals + static_cast<std::size_t>(blocks_[index].first_row) * d;
+    for (int c = 0; c < d; ++c) {
+      ResidualOfCoordinate<true>(shape_, rows, near, c, residual);
+      for (int i = 0; i < rows.num_rows; ++i) target[i * d + c] = -value[i];
+    }
   }
 }
 

@@ -72,10 +72,6 @@ bool CheckOutputs(const std::vector<OutputFile>& outputs, const std::vector<std:
   return true;
 }
 
-bool IsWriteError(const FigureResult& figure) {
-  return !figure.drawn && figure.message.compare(0, 12, "cannot write") == 0;
-}
-
 std::string WithExtension(const std::string& path, const std::string& extension) {
   return fs::path(path).replace_extension(extension).string();
 }

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/gnuplot.h"
-
 namespace batten {
 
 /// A file that is going to be written, and the flag that asks for it.
@@ -23,9 +21,6 @@ bool CheckName(const OutputFile& output, std::string* error);
 /// `error`.
 bool CheckOutputs(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs,
                   std::string* error);
-
-/// The disk's fault and not that of gnuplot, without which the script and data still serve.
-bool IsWriteError(const FigureResult& figure);
 
 /// `path` with another ending: a figure's script and data stand beside it.
 std::string WithExtension(const std::string& path, const std::string& extension);

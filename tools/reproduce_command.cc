@@ -55,7 +55,7 @@ bool Prepare(const Reproduction& reproduction, const ReproductionSpec& spec, std
   return CheckOutputs(outputs, {}, error);
 }
 
-/// One line per claim.
+/// Two lines per claim: its verdict, and what decided.
 std::string VerdictLines(const ReproductionResult& result) {
   std::string text;
   for (const ExperimentResult& experiment : result.experiments) {
@@ -121,15 +121,15 @@ Command ReproduceCommand() {
   command.details = {
       "Writes OUT/NAME.html (one file, pictures put in), OUT/NAME.md, and for each experiment its "
       "CSV files and figures: .svg with the gnuplot script (.gp) and the data (.dat) behind it. "
-      "Each "
-      "verdict is computed from the CSV by the rule stated beside it. Runs that an experiment "
+      "Each verdict is computed from the CSV by the rule stated beside it. Runs that an experiment "
       "expects to fail are no failures.",
       "Reproductions: accelerated-gim."};
   command.examples = {"batten reproduce accelerated-gim --out=out/accelerated-gim",
                       "batten reproduce accelerated-gim --only=figure_1 --repetitions=1"};
+  FlagInfo repetitions = NumberFlag("repetitions", "N", 1.0, 1000.0);
+  repetitions.help = "Runs of each solver, one after the other; times are medians.";
   command.flags = {
-      TextFlag("only", "LIST", "names of experiments, separated by commas"),
-      NumberFlag("repetitions", "N", 1.0, 1000.0),
+      TextFlag("only", "LIST", "names of experiments, separated by commas"), repetitions,
       TextFlag("out", "FOLDER", "a folder",
                "Folder for page, figures and CSV files, created if missing. Not given: "
                "out/NAME."),

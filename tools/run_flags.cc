@@ -79,10 +79,9 @@ bool SolversFromFlag(const std::string& flag, const std::string& text,
       continue;
     }
     for (const std::string& name : registry.Names()) {
-      const std::string& base = registry.Find(name)->usual_base;
-      std::shared_ptr<const NameSpec> wrapped;
-      if (!base.empty()) wrapped = std::make_shared<NameSpec>(NameSpec{base, {}, nullptr});
-      solvers->push_back({name, {}, wrapped});
+      NameSpec usual;
+      is_good = ParseNameSpec(registry.UsualName(name), &usual, error) && is_good;
+      solvers->push_back(usual);
     }
   }
   if (!is_good) *error = "--" + flag + ": " + *error;

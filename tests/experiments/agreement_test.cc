@@ -21,9 +21,8 @@ constexpr double kAgreement = 1e-8;
 std::vector<std::string> Solvers() {
   std::vector<std::string> solvers;
   for (const std::string& name : SolverRegistry::Global().Names()) {
-    const SolverInfo& info = *SolverRegistry::Global().Find(name);
-    if (!info.limit.empty()) continue;
-    solvers.push_back(info.usual_base.empty() ? name : name + ":" + info.usual_base);
+    if (!SolverRegistry::Global().Find(name)->limit.empty()) continue;
+    solvers.push_back(SolverRegistry::Global().UsualName(name));
   }
   for (const char* step : {"optimal", "cauchy", "barzilai_borwein"}) {
     solvers.push_back(std::string("lspia/step=") + step);

@@ -54,8 +54,7 @@ struct Path {
 std::vector<Path> AllPaths() {
   std::vector<Path> paths;
   for (const std::string& name : SolverRegistry::Global().Names()) {
-    const std::string& base = SolverRegistry::Global().Find(name)->usual_base;
-    paths.push_back({base.empty() ? name : name + ":" + base, true});
+    paths.push_back({SolverRegistry::Global().UsualName(name), true});
   }
   for (const char* more : {"ceres_lbfgs/form=problem", "ceres_lbfgs/form=spans"}) {
     paths.push_back({more, true});

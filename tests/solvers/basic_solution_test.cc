@@ -20,8 +20,8 @@ TEST(BasicSolution, GivesNothingToColumnsThatDependOnOthers) {
 }
 
 TEST(BasicSolution, IsZeroForColumnsOfNothing) {
-  EXPECT_TRUE(BasicSolution(Eigen::MatrixXd::Zero(3, 2), Eigen::Vector3d(1, 2, 3), 1e-10)
-                  .isZero(0.0));
+  EXPECT_TRUE(
+      BasicSolution(Eigen::MatrixXd::Zero(3, 2), Eigen::Vector3d(1, 2, 3), 1e-10).isZero(0.0));
 }
 
 }  // namespace

@@ -22,10 +22,7 @@ namespace batten {
 class EverySolver : public ::testing::TestWithParam<std::string> {
  protected:
   /// As users would write it; what wraps a solver gets one.
-  std::string name() const {
-    const std::string& base = SolverRegistry::Global().Find(GetParam())->usual_base;
-    return base.empty() ? GetParam() : GetParam() + ":" + base;
-  }
+  std::string name() const { return SolverRegistry::Global().UsualName(GetParam()); }
 };
 
 std::unique_ptr<Solver> MakeSolver(const std::string& name_and_options);

@@ -35,8 +35,7 @@ class SteppedRun {
 std::vector<std::string> StepperNames() {
   std::vector<std::string> names;
   for (const std::string& name : SolverRegistry::Global().Names()) {
-    const std::string& base = SolverRegistry::Global().Find(name)->usual_base;
-    const std::string whole = base.empty() ? name : name + ":" + base;
+    const std::string whole = SolverRegistry::Global().UsualName(name);
     const std::unique_ptr<Solver> solver = MakeSolver(whole);
     if (dynamic_cast<Stepper*>(solver.get()) != nullptr) names.push_back(whole);
   }
