@@ -71,7 +71,10 @@ class Reproducing : public ::testing::Test {
   double fraction_ = 0.0;
   std::string text_;
   Reproduction reproduction_ = Numbers(&num_runs_);
-  std::filesystem::path folder_ = Folder("reproduction");
+  // One of its own for each test: ctest runs them at the same time.
+  std::filesystem::path folder_ =
+      Folder(std::string("reproduction ") +
+             ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(Reproducing, WritesTablesFiguresAndPages) {
