@@ -74,7 +74,7 @@ std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
 }
 
 std::string WhyNotPlainInterpolation(const Objective& objective, const std::string& solver_name) {
-  const std::string why = WhyNoUnboundedCurveView(objective, solver_name);
+  std::string why = WhyNoUnboundedCurveView(objective, solver_name);
   if (!why.empty()) return why;
   const Problem& problem = objective.problem();
   const CurveFit* fit = problem.curve_fit();
