@@ -19,6 +19,7 @@ Experiment AcceleratedGimSpectrum();
 Experiment AcceleratedGimOneCall();
 Experiment AcceleratedGimLargestResidual();
 Experiment AcceleratedGimUnits();
+Experiment AcceleratedGimStopRule();
 Experiment AcceleratedGimWhenToIterate();
 
 }  // namespace batten

@@ -1,6 +1,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr const char* kOutlines[] = {"rhino", "squirrel", "dolphin", "cat"};
 constexpr const char* kLawson = "lawson";
+constexpr int kLawsonIterations = 300;
 
 struct Residuals {
   Eigen::VectorXd lengths;  // |Q_i - C(t_i)|
@@ -29,12 +31,11 @@ Residuals Measure(const Problem& problem, const Eigen::VectorXd& x) {
 /// A curve with a small largest residual by Lawson's algorithm (1961): least squares again and
 /// again, each weight multiplied by its residual. The best of its iterates.
 Residuals Lawson(const Problem& problem) {
-  constexpr int kIterations = 300;
   const CurveFit& fit = *problem.curve_fit();
   const Eigen::Index m = fit.parameters().size();
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(m);
   Residuals best = {Eigen::VectorXd::Constant(m, std::numeric_limits<double>::infinity())};
-  for (int k = 0; k < kIterations && !InterruptRequested(); ++k) {
+  for (int k = 0; k < kLawsonIterations && !InterruptRequested(); ++k) {
     DataSet data = fit.data();
     data.weights = weights;
     const std::shared_ptr<const Problem> weighted = CheckedFit(std::move(data), fit.spec());
@@ -93,11 +94,20 @@ bool RunResiduals(const ExperimentRun& run, ExperimentTables* tables, std::strin
       }
     }
     if (std::string(name) == "rhino_interpolation") continue;
+    const auto begin = std::chrono::steady_clock::now();
     const Residuals least = Lawson(*problem);
-    std::vector<std::string> row = {NumberText(least.largest()), NumberText(least.rms()), name};
-    row.resize(ends.columns().size());
-    row[6] = kLawson;
-    ends.AddRow(row);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    ends.AddRow(std::vector<std::string>(ends.columns().size()));
+    for (const auto& [column, text] :
+         {std::pair<std::string, std::string>("largest", NumberText(least.largest())),
+          {"rms", NumberText(least.rms())},
+          {"problem", name},
+          {"solver", kLawson},
+          {"iterations", std::to_string(kLawsonIterations)},
+          {"seconds", NumberText(seconds.count())},
+          {"times_cholesky", NumberText(seconds.count() / on.cholesky_seconds())}}) {
+      ends.Set(ends.num_rows() - 1, column, text);
+    }
     AddProfile(name, kLawson, least, &profiles);
   }
   return true;

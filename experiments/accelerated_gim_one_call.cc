@@ -5,6 +5,7 @@
 
 #include "experiments/accelerated_gim.h"
 #include "experiments/experiment_runs.h"
+#include "experiments/short_number.h"
 
 namespace batten {
 namespace {
@@ -80,7 +81,8 @@ Judgement JudgeOneCall(const ExperimentTables& tables) {
                       " of " + std::to_string(all) +
                       " problems, and is at the direct answer nearest to the "
                       "start, to 1e-6 of the size, on " +
-                      std::to_string(nearest) + " (the farthest is " + NumberText(worst) + " away)";
+                      std::to_string(nearest) + " (the farthest is " + ShortNumber(worst, 2) +
+                      " away)";
   judgement.verdict = solved < all      ? ClaimVerdict::kDoesNotHold
                       : all < kProblems ? ClaimVerdict::kUndecided
                       : nearest == all  ? ClaimVerdict::kHolds
@@ -91,7 +93,7 @@ Judgement JudgeOneCall(const ExperimentTables& tables) {
 std::vector<PlotPanel> IterationsByCase(const ExperimentTables& tables) {
   PlotPanel panel;
   panel.title = "Race";
-  panel.x_label = "1 interpolation, 2 approximation, 3 too few, 4 two on one";
+  panel.x_names = tables.at("").Distinct("problem");
   panel.y_label = "iterations";
   panel.log_y = true;
   const CsvTable race = tables.at("").Where("mode", "race");
@@ -99,9 +101,12 @@ std::vector<PlotPanel> IterationsByCase(const ExperimentTables& tables) {
   for (const char* solver : {"gim", "lspia", "lbfgs", "cg"}) {
     const CsvTable rows = race.Where("solver", solver);
     std::vector<double> x;
-    for (std::size_t k = 0; k < rows.num_rows(); ++k) x.push_back(static_cast<double>(k) + 1.0);
+    // Side by side: the problems have no order.
+    for (std::size_t k = 0; k < rows.num_rows(); ++k) {
+      x.push_back(static_cast<double>(k) + 0.85 + 0.1 * color);
+    }
     panel.series.push_back(
-        {solver, x, rows.Numbers("iterations"), PlotSeries::Style::kLinePoints, color++});
+        {solver, x, rows.Numbers("iterations"), PlotSeries::Style::kPoints, color++});
   }
   return {panel};
 }
@@ -139,7 +144,10 @@ Experiment AcceleratedGimOneCall() {
        "of the size from the direct answer nearest to the start, in part where only the first",
        &JudgeOneCall}};
   experiment.figures = {
-      {"one_call_iterations", "Iterations on the four problems, race.", 1, &IterationsByCase}};
+      {"one_call_iterations",
+       "Iterations on the four problems, race; gim takes only those with as many control points "
+       "as points.",
+       1, &IterationsByCase}};
   return experiment;
 }
 

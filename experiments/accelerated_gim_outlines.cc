@@ -55,7 +55,7 @@ void AddDataPoints(const Problem& problem, CsvTable* curves) {
 }
 
 bool RunOutlines(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
-  CsvTable& runs = (*tables)[""] = CsvTable(RunColumns());
+  CsvTable& runs = (*tables)[""] = CsvTable(RunColumnsBehind({"rule"}));
   CsvTable& traces = (*tables)["traces"] = CsvTable(TraceColumns());
   CsvTable& curves = (*tables)["curves"] = CsvTable({"problem", "solver", "iteration", "x", "y"});
   double done = 0.0;
@@ -66,16 +66,21 @@ bool RunOutlines(const ExperimentRun& run, ExperimentTables* tables, std::string
     if (problem == nullptr) return false;
     ProblemRuns on(published.problem, problem, run.repetitions);
     AddDataPoints(*problem, &curves);
-    for (const RunSpec& spec : {NativeSpec(1e-6), RaceSpec(1e-10)}) {
+    for (const StopRule& rule : PaperRules()) {
       for (const char* solver : {"lspia", "lspia/step=max_column", "lspia/step=optimal", "lbfgs",
                                  "lbfgs/wolfe=strong", "cg", "banded_cholesky"}) {
         if (InterruptRequested()) return true;
         const std::string name(solver);
+        if (!RuleConcerns(rule, name)) continue;
+        const bool is_native = rule.name == std::string(kPaperRule);
         const bool drawn = name == kLspia || name == kLbfgs;
-        RunSpec keeping = spec;
+        const bool traced = drawn && rule.name != std::string(kStrictRule);
+        RunSpec keeping = rule.spec;
         keeping.keep_iterates = drawn;
-        const RunResult result = on.Run(name, keeping, &runs, drawn ? &traces : nullptr);
-        if (drawn && spec.mode == Mode::kNative) AddCurves(*problem, name, result, &curves);
+        CsvTable rows(RunColumns());
+        const RunResult result = on.Run(name, keeping, &rows, traced ? &traces : nullptr);
+        AddRowsBehind({rule.name}, rows, &runs);
+        if (drawn && is_native) AddCurves(*problem, name, result, &curves);
       }
     }
   }
@@ -86,7 +91,7 @@ bool RunOutlines(const ExperimentRun& run, ExperimentTables* tables, std::string
 double Native(const ExperimentTables& tables, const std::string& problem, const std::string& solver,
               const std::string& column) {
   const CsvTable rows =
-      tables.at("").Where("mode", "native").Where("problem", problem).Where("solver", solver);
+      tables.at("").Where("rule", kPaperRule).Where("problem", problem).Where("solver", solver);
   return rows.num_rows() == 1 ? rows.Number(0, column) : std::nan("");
 }
 
@@ -176,6 +181,10 @@ Experiment AcceleratedGimOutlines() {
       "`optimal` stand beside each other. Times are of this machine, without reading and drawing; "
       "the paper's are those of an interactive program.";
   experiment.run = &RunOutlines;
+  experiment.shown = [](const ExperimentTables& tables) {
+    return tables.at("").Select({"problem", "rule", "solver", "status", "iterations", "seconds",
+                                 "times_cholesky", "energy", "gradient_norm", "gap"});
+  };
   experiment.claims = {
       {"276, 314, 105, 297 iterations against 23, 20, 20, 24", "Table 1",
        "ratio of the native iterations of lspia and lbfgs: holds where all four are at least half "

@@ -39,20 +39,17 @@ bool RunCases(const ExperimentRun& run, ExperimentTables* tables, std::string* e
     if (run.progress) run.progress(done / static_cast<double>(cases.size()), c.name);
     done += 1.0;
     ProblemRuns on(c.name, c.problem, run.repetitions);
-    const std::pair<const char*, RunSpec> rules[] = {{"|g| < 1e-6", NativeSpec(1e-6)},
-                                                     {"|g| < 1e-10", NativeSpec(1e-10)},
-                                                     {"race", RaceSpec(1e-10)}};
-    for (const auto& [rule, spec] : rules) {
+    for (const StopRule& rule : PaperRules()) {
       CsvTable rows(RunColumns());
-      on.Run("lbfgs", spec, &rows);
-      AddRowsBehind({rule}, rows, &runs);
+      on.Run("lbfgs", rule.spec, &rows);
+      AddRowsBehind({rule.name}, rows, &runs);
     }
   }
   return true;
 }
 
 Judgement JudgeThirty(const ExperimentTables& tables) {
-  const CsvTable rows = tables.at("").Where("rule", "|g| < 1e-6");
+  const CsvTable rows = tables.at("").Where("rule", kPaperRule);
   Judgement judgement;
   if (rows.num_rows() == 0) return judgement;
   int within = 0;
@@ -73,8 +70,8 @@ Judgement JudgeThirty(const ExperimentTables& tables) {
 }
 
 Judgement JudgeTenMore(const ExperimentTables& tables) {
-  const CsvTable coarse = tables.at("").Where("rule", "|g| < 1e-6");
-  const CsvTable fine = tables.at("").Where("rule", "|g| < 1e-10");
+  const CsvTable coarse = tables.at("").Where("rule", kPaperRule);
+  const CsvTable fine = tables.at("").Where("rule", kStrictRule);
   Judgement judgement;
   if (coarse.num_rows() == 0 || fine.num_rows() != coarse.num_rows()) return judgement;
   std::vector<double> more;
@@ -101,10 +98,10 @@ std::vector<PlotPanel> CountsAgainstPoints(const ExperimentTables& tables) {
   panel.x_label = "points";
   panel.y_label = "iterations";
   int color = 0;
-  for (const char* rule : {"|g| < 1e-6", "|g| < 1e-10"}) {
+  for (const char* rule : {kPaperRule, kStrictRule}) {
     const CsvTable rows = tables.at("").Where("rule", rule);
-    panel.series.push_back({rule, rows.Numbers("points"), rows.Numbers("iterations"),
-                            PlotSeries::Style::kPoints, color++});
+    panel.series.push_back({rule == kPaperRule ? "|g| < 1e-6" : rule, rows.Numbers("points"),
+                            rows.Numbers("iterations"), PlotSeries::Style::kPoints, color++});
   }
   panel.series.push_back(
       {"30 iterations", {0.0, 100.0}, {30.0, 30.0}, PlotSeries::Style::kDashed, 7});
@@ -128,8 +125,8 @@ Experiment AcceleratedGimThirtyIterations() {
   experiment.shown = [](const ExperimentTables& tables) {
     CsvTable shown({"problem", "points", "control points", "to 1e-6", "x cholesky", "to 1e-10",
                     "status there"});
-    const CsvTable coarse = tables.at("").Where("rule", "|g| < 1e-6");
-    const CsvTable fine = tables.at("").Where("rule", "|g| < 1e-10");
+    const CsvTable coarse = tables.at("").Where("rule", kPaperRule);
+    const CsvTable fine = tables.at("").Where("rule", kStrictRule);
     for (std::size_t row = 0; row < coarse.num_rows() && row < fine.num_rows(); ++row) {
       shown.AddRow({coarse.Text(row, "problem"), coarse.Text(row, "points"),
                     coarse.Text(row, "control_points"), coarse.Text(row, "iterations"),

@@ -27,15 +27,13 @@ bool RunUnits(const ExperimentRun& run, ExperimentTables* tables, std::string* e
       if (run.progress) run.progress(done / (2.0 * std::size(kFactors)), name);
       done += 1.0;
       ProblemRuns on(name, InOtherUnits(*outline, factor), run.repetitions);
-      const std::pair<const char*, RunSpec> rules[] = {{"step or |g| < 1e-6", NativeSpec(1e-6)},
-                                                       {"|g| < 1e-10", NativeSpec(1e-10)},
-                                                       {"race", RaceSpec(1e-10)}};
-      for (const auto& [rule, spec] : rules) {
+      for (const StopRule& rule : PaperRules()) {
         for (const char* solver : {"lspia", "lbfgs", "cg"}) {
           if (InterruptRequested()) return true;
+          if (!RuleConcerns(rule, solver)) continue;
           CsvTable rows(RunColumns());
-          on.Run(solver, spec, &rows);
-          AddRowsBehind({NumberText(factor), rule}, rows, &runs);
+          on.Run(solver, rule.spec, &rows);
+          AddRowsBehind({NumberText(factor), rule.name}, rows, &runs);
         }
       }
     }
@@ -74,10 +72,10 @@ std::string Text(const char* solver, const Spread& spread) {
 
 Judgement JudgeUnits(const ExperimentTables& tables) {
   Judgement judgement;
-  const Spread lspia = SpreadOf(tables, "rhino", "step or |g| < 1e-6", "lspia");
-  const Spread coarse = SpreadOf(tables, "rhino", "step or |g| < 1e-6", "lbfgs");
-  const Spread fine = SpreadOf(tables, "rhino", "|g| < 1e-10", "lbfgs");
-  const Spread race = SpreadOf(tables, "rhino", "race", "lbfgs");
+  const Spread lspia = SpreadOf(tables, "rhino", kPaperRule, "lspia");
+  const Spread coarse = SpreadOf(tables, "rhino", kPaperRule, "lbfgs");
+  const Spread fine = SpreadOf(tables, "rhino", kStrictRule, "lbfgs");
+  const Spread race = SpreadOf(tables, "rhino", kRaceRule, "lbfgs");
   // One unit cannot show a dependence on it.
   if (std::min({lspia.runs, coarse.runs, fine.runs}) < 2) return judgement;
   judgement.because =
@@ -107,15 +105,22 @@ std::vector<PlotPanel> AgainstUnit(const ExperimentTables& tables) {
     panel.log_x = panel.log_y = true;
     const CsvTable on = tables.at("").Where("problem", problem);
     int color = 0;
-    for (const auto& [solver, rule] : {std::pair("lspia", "step or |g| < 1e-6"),
-                                       {"lspia", "race"},
-                                       {"lbfgs", "step or |g| < 1e-6"},
-                                       {"lbfgs", "|g| < 1e-10"},
-                                       {"lbfgs", "race"}}) {
+    PlotSeries at_floor = {"ended at the rounding floor", {}, {}, PlotSeries::Style::kCircles, 6};
+    for (const auto& [solver, rule] : {std::pair("lspia", kPaperRule),
+                                       {"lspia", kRaceRule},
+                                       {"lbfgs", kPaperRule},
+                                       {"lbfgs", kStrictRule},
+                                       {"lbfgs", kRaceRule}}) {
       const CsvTable rows = on.Where("solver", solver).Where("rule", rule);
       panel.series.push_back({std::string(solver) + ": " + rule, rows.Numbers("factor"),
                               rows.Numbers("iterations"), PlotSeries::Style::kLinePoints, color++});
+      const CsvTable floor = rows.Where("status", "rounding_floor");
+      for (std::size_t row = 0; row < floor.num_rows(); ++row) {
+        at_floor.x.push_back(floor.Number(row, "factor"));
+        at_floor.y.push_back(floor.Number(row, "iterations"));
+      }
     }
+    panel.series.push_back(std::move(at_floor));
     panels.push_back(std::move(panel));
   }
   return panels;

@@ -66,6 +66,16 @@ CsvTable CsvTable::Where(const std::string& column, const std::string& text) con
   return result;
 }
 
+CsvTable CsvTable::Select(const std::vector<std::string>& columns) const {
+  CsvTable selected(columns);
+  for (std::size_t row = 0; row < num_rows(); ++row) {
+    std::vector<std::string> cells;
+    for (const std::string& column : columns) cells.push_back(Text(row, column));
+    selected.AddRow(std::move(cells));
+  }
+  return selected;
+}
+
 std::vector<double> CsvTable::Numbers(const std::string& column) const {
   std::vector<double> values;
   for (std::size_t row = 0; row < rows_.size(); ++row) values.push_back(Number(row, column));

@@ -26,6 +26,8 @@ class CsvTable {
   void Set(std::size_t row, const std::string& column, const std::string& text);
   /// Rows whose cell in `column` is `text`, in their order.
   CsvTable Where(const std::string& column, const std::string& text) const;
+  /// These columns, in this order.
+  CsvTable Select(const std::vector<std::string>& columns) const;
   std::vector<double> Numbers(const std::string& column) const;
   /// Different texts of a column in the order of their first row.
   std::vector<std::string> Distinct(const std::string& column) const;

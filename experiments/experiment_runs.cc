@@ -10,6 +10,23 @@
 #include "solvers/lanczos.h"
 
 namespace batten {
+namespace {
+
+/// Seconds from which on a run is not warmed up: cold caches are no part of its time.
+constexpr double kLongRun = 0.5;
+
+}  // namespace
+
+std::vector<StopRule> PaperRules() {
+  return {{kPaperRule, NativeSpec(1e-6)},
+          {kStrictRule, NativeSpec(1e-10)},
+          {kRaceRule, RaceSpec(1e-10)}};
+}
+
+bool RuleConcerns(const StopRule& rule, const std::string& solver) {
+  const bool by_gradient = solver.rfind("lbfgs", 0) == 0 || solver == "cg";
+  return by_gradient || std::string(rule.name) != kStrictRule;
+}
 
 std::vector<std::string> RunColumns() {
   return {"problem",    "points",   "control_points", "mode",           "solver", "status",
@@ -52,6 +69,21 @@ double ProblemRuns::cholesky_seconds() {
   return cholesky_seconds_;
 }
 
+double ProblemRuns::MedianSeconds(const NameSpec& solver, const RunSpec& spec, double first) const {
+  // The first run has found caches cold, and has kept a trace.
+  std::vector<double> seconds;
+  RunSpec again = spec;
+  again.keep_trace = again.keep_iterates = false;
+  const int repetitions = first > kLongRun ? repetitions_ - 1 : repetitions_;
+  for (int k = 0; k < repetitions && !InterruptRequested(); ++k) {
+    RunResult repeated;
+    std::string error;
+    batten::Run(*problem_, solver, again, &repeated, &error);
+    seconds.push_back(repeated.seconds);
+  }
+  return seconds.empty() ? first : Median(seconds);
+}
+
 RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTable* table,
                            CsvTable* traces) {
   NameSpec name;
@@ -73,15 +105,7 @@ RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTa
     table->AddRow(row);
     return result;
   }
-  std::vector<double> seconds = {result.seconds};
-  RunSpec again = spec;
-  again.keep_trace = again.keep_iterates = false;
-  for (int k = 1; k < repetitions_ && !InterruptRequested(); ++k) {
-    RunResult repeated;
-    batten::Run(*problem_, name, again, &repeated, &error);
-    seconds.push_back(repeated.seconds);
-  }
-  const double median = Median(seconds);
+  const double median = MedianSeconds(name, spec, result.seconds);
   const double cholesky = solver == "banded_cholesky" ? median : cholesky_seconds();
   row.insert(row.end(), {ToString(result.outcome.reason), std::to_string(result.iterations),
                          std::to_string(result.counts.products + result.counts.gradient_calls),

@@ -21,10 +21,24 @@ void AddRowsBehind(const std::vector<std::string>& first, const CsvTable& rows, 
 /// The columns of a table of traces, one row per iteration.
 std::vector<std::string> TraceColumns();
 
+/// A stop rule with the name that it has in tables.
+struct StopRule {
+  const char* name;
+  RunSpec spec;
+};
+inline constexpr const char* kPaperRule = "step or |g| < 1e-6";
+inline constexpr const char* kStrictRule = "|g| < 1e-10";
+inline constexpr const char* kRaceRule = "race";
+/// The paper's two, native, and |g| <= 1e-10 |g(start)| for all.
+std::vector<StopRule> PaperRules();
+/// False for a geometric iteration under kStrictRule, which the paper has for L-BFGS alone.
+bool RuleConcerns(const StopRule& rule, const std::string& solver);
+
 /// Runs of several solvers on one problem, as rows of an experiment's tables.
 class ProblemRuns {
  public:
-  /// Times are medians of `repetitions` runs. `label` stands in the column "problem".
+  /// Times are medians of `repetitions` runs behind one that is not counted. `label` stands in the
+  /// column "problem".
   ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions);
 
   const Problem& problem() const { return *problem_; }
@@ -38,6 +52,8 @@ class ProblemRuns {
                 CsvTable* traces = nullptr);
 
  private:
+  double MedianSeconds(const NameSpec& solver, const RunSpec& spec, double first) const;
+
   std::string label_;
   std::shared_ptr<const Problem> problem_;
   int repetitions_;

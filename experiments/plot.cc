@@ -28,6 +28,8 @@ std::string StyleWords(const PlotSeries& series) {
       return "with lines linewidth 1.5 " + color;
     case PlotSeries::Style::kDashed:
       return "with lines linewidth 1.2 dashtype 2 " + color;
+    case PlotSeries::Style::kCircles:
+      return "with points pointtype 6 pointsize 1.2 " + color;
     case PlotSeries::Style::kPoints:
       return "with points pointtype 7 pointsize 0.4 " + color;
     case PlotSeries::Style::kLinePoints:
@@ -42,6 +44,27 @@ std::string Axis(const char* axis, const std::string& label, bool log) {
       "set " + name + "label " + GnuplotString(ShownText(label, kMostText)) + " noenhanced\n";
   if (log) text += "set logscale " + name + "\nset format " + name + " '10^{%T}'\n";
   return text;
+}
+
+std::string NamedTics(const std::vector<std::string>& names) {
+  if (names.empty()) return "set xtics autofreq\nset xrange [*:*]\n";
+  std::string tics;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    tics += (k == 0 ? "" : ", ") + GnuplotString(ShownText(names[k], kMostText)) + " " +
+            std::to_string(k + 1);
+  }
+  return "set xtics (" + tics + ")\nset xrange [0.5:" + std::to_string(names.size()) + ".5]\n";
+}
+
+/// In characters of the plot's font: what the longest label takes in the legend's smaller one,
+/// behind its line or mark.
+int LegendWidth(const PlotPanel& panel) {
+  std::size_t longest = 0;
+  for (const PlotSeries& series : panel.series) longest = std::max(longest, series.label.size());
+  constexpr double kSmaller = 0.8;
+  constexpr int kMark = 7;
+  const auto shown = static_cast<double>(std::min(longest, kMostText));
+  return panel.legend && longest > 0 ? kMark + static_cast<int>(kSmaller * shown) : 2;
 }
 
 bool IsShown(const PlotPanel& panel, double x, double y) {
@@ -85,12 +108,15 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
   int num_series = 0;
   for (const PlotPanel& panel : panels) {
     commands += "unset logscale\nset format '%g'\n";
-    // A picture of a curve needs no numbers; a graph needs room for its axis and its legend.
+    // A picture of a curve needs no numbers; a graph needs room for its axis.
     commands += panel.equal_scale
-                    ? "set size ratio -1\nunset border\nunset tics\nset offsets graph 0.05, graph "
-                      "0.05, graph 0.05, graph 0.05\nset margins 1, 20, 1, 2.5\n"
+                    ? "set size ratio -1\nunset border\nunset tics\nset xrange [*:*]\nset offsets "
+                      "graph 0.05, graph 0.05, graph 0.05, graph 0.05\nset margins 1, "
                     : "set size noratio\nset border 3 linewidth 0.8\nset tics nomirror out scale "
-                      "0.6 font ',10'\nset offsets 0, 0, 0, 0\nset margins 10, 25, 4.5, 2.5\n";
+                      "0.6 font ',10'\nset offsets 0, 0, 0, 0\n" +
+                          NamedTics(panel.x_names) + "set margins 10, ";
+    commands +=
+        std::to_string(LegendWidth(panel)) + (panel.equal_scale ? ", 1, 2.5\n" : ", 4.5, 2.5\n");
     commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
                 Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
     commands += panel.legend ? "set key at graph 1.03, graph 1 left top vertical Left reverse "

@@ -12,7 +12,7 @@ struct PlotSeries {
   std::string label;  ///< Empty: not in the legend.
   std::vector<double> x;
   std::vector<double> y;
-  enum class Style { kLine, kPoints, kLinePoints, kDashed } style = Style::kLinePoints;
+  enum class Style { kLine, kPoints, kLinePoints, kDashed, kCircles } style = Style::kLinePoints;
   /// One of a fixed list of colours that are told apart without seeing red and green alike.
   int color = 0;
 };
@@ -25,6 +25,8 @@ struct PlotPanel {
   bool log_y = false;
   bool equal_scale = false;
   bool legend = true;
+  /// Names for x = 1, 2, ...; empty: numbers.
+  std::vector<std::string> x_names;
   std::vector<PlotSeries> series;
 };
 

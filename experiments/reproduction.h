@@ -25,7 +25,7 @@ struct Judgement {
 
 /// A claim of a source, and the rule that judges it from the tables alone.
 struct SourceClaim {
-  std::string quote;  ///< One phrase of the source, or its figures.
+  std::string quote;  ///< One phrase: the source's figures, or what it says, not word for word.
   std::string place;  ///< Where it stands there: "Table 1".
   std::string rule;   ///< What `judge` computes, in words.
   std::function<Judgement(const ExperimentTables&)> judge;

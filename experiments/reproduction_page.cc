@@ -45,7 +45,7 @@ std::string TableText(const CsvTable& table) {
 }
 
 std::string ClaimText(const SourceClaim& claim, const Judgement& judgement) {
-  return "> \"" + claim.quote + "\" (" + claim.place + ")\n\n**" + ToString(judgement.verdict) +
+  return "> " + claim.quote + " (" + claim.place + ")\n\n**" + ToString(judgement.verdict) +
          "**: " + judgement.because + "  \nRule: " + claim.rule + "\n\n";
 }
 
@@ -53,8 +53,8 @@ std::string Summary(const std::vector<ExperimentResult>& results) {
   std::string text = "| experiment | claim | verdict |\n|---|---|---|\n";
   for (const ExperimentResult& result : results) {
     for (std::size_t k = 0; k < result.judgements.size(); ++k) {
-      text += "| " + Cell(result.experiment->title) + " | \"" +
-              Cell(result.experiment->claims[k].quote) + "\" | " +
+      text += "| " + Cell(result.experiment->title) + " | " +
+              Cell(result.experiment->claims[k].quote) + " | " +
               ToString(result.judgements[k].verdict) + " |\n";
     }
   }

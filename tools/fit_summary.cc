@@ -49,8 +49,8 @@ std::string SolverLines(const RunResult& run) {
                               (run.outcome.message.empty() ? "" : ": " + run.outcome.message));
   for (const auto& [name, value] : run.notes) text += Line("note", name + ": " + value);
   if (std::isfinite(run.observed_rate)) {
-    text +=
-        Line("rate", "|g| falls by " + Short(run.observed_rate) + " per iteration near the end");
+    text += Line("rate", "|g| is " + Short(run.observed_rate) +
+                             " times the one before, per iteration near the end");
   }
   return text;
 }

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
+#include <memory>
+#include <string>
 #include <utility>
 
-#include "tests/solvers/contract_cases.h"
+#include "experiments/published_curves.h"
+#include "solvers/solver_registry.h"
+#include "tests/solvers/test_context.h"
 
 namespace batten {
 namespace {
@@ -18,49 +21,16 @@ constexpr double kPublishedTolerance = 1e-3;
 constexpr int kCases = 2;
 constexpr double kPublishedCondition[kCases] = {22.2704, 22.3054};  // of A'A
 
-Points PublishedCurve(int number) {
-  const int m = number == 0 ? 15001 : 10001;
-  Points points(m, number == 0 ? 2 : 3);
-  for (int i = 0; i < m; ++i) {
-    const double a = 2.0 * M_PI * i / (m - 1);
-    if (number == 0) {
-      const double rho = 2.0 + 4.0 * std::cos(2.0 * a + M_PI / 4) + std::cos(3.0 * a + M_PI / 4);
-      points.row(i) << rho * std::cos(a), rho * std::sin(a);
-    } else {
-      const double b = a * M_PI / 3.0;
-      points.row(i) << 10.0 * std::cos(b), 10.0 * std::sin(b), b;
-    }
-  }
-  return points;
+std::unique_ptr<Solver> MakeSolver(const std::string& name_and_options) {
+  NameSpec spec;
+  std::string error;
+  EXPECT_TRUE(ParseNameSpec(name_and_options, &spec, &error)) << error;
+  return SolverRegistry::Global().Make(spec, nullptr, &error);
 }
-
-struct PublishedCase {
-  explicit PublishedCase(int number) {
-    DataSet data;
-    data.name = "published";
-    data.points = PublishedCurve(number);
-    const int n = number == 0 ? 3001 : 2001;
-    const auto m = static_cast<int>(data.points.rows());
-    Points first(n, data.points.cols());
-    for (int i = 0; i < n; ++i) {
-      // Wide enough for m i.
-      const auto chosen = static_cast<int>(static_cast<std::int64_t>(m) * i / (n - 1));
-      first.row(i) = data.points.row(i == n - 1 ? m - 1 : std::min(chosen, m - 1));
-    }
-    FitSpec spec = MakeSpec(3, false, n);
-    spec.parameters = Parameterization::kChordLength;
-    spec.knots = KnotRule::kAveraged;
-    problem = MakeFit(std::move(data), spec);
-    start = problem->curve_fit()->Variables(first);
-  }
-
-  std::unique_ptr<Problem> problem;
-  Eigen::VectorXd start;
-};
 
 /// One run from the published start.
 struct PublishedRun {
-  PublishedRun(const PublishedCase& published, const std::string& solver,
+  PublishedRun(const PublishedCurve& published, const std::string& solver,
                TestContextOptions options = {1000, kPublishedTolerance})
       : context(*published.problem, options) {
     Objective objective(published.problem.get(), &context);
@@ -112,7 +82,7 @@ const PublishedResult kPublished[] = {
 
 TEST(PublishedLspia, StopsWhereThePublishedProgramsDo) {
   for (int number = 0; number < kCases; ++number) {
-    const PublishedCase published(number);
+    const PublishedCurve published = MakePublishedCurve(number);
     for (const PublishedResult& result : kPublished) {
       const PublishedRun run(published, result.solver);
       EXPECT_EQ(run.outcome.reason, StopReason::kGradientSmall);
@@ -129,7 +99,7 @@ TEST(PublishedLspia, BarzilaiBorweinEndsAtThePublishedGradient) {
   // which halved no step. The first step there is one over the largest column sum, too, and no
   // eigenvalue is estimated: what differs is rounding, which four steps of up to 22 / l1 enlarge.
   constexpr double kRounding = 1e-9;
-  const PublishedCase published(1);
+  const PublishedCurve published = MakePublishedCurve(1);
   const PublishedRun run(published, "lspia/step=barzilai_borwein");
   EXPECT_EQ(run.iterations(), 4);
   const std::vector<double>& norms = run.context.gradient_norms();
@@ -138,7 +108,7 @@ TEST(PublishedLspia, BarzilaiBorweinEndsAtThePublishedGradient) {
 
 TEST(PublishedLspia, SeesThePublishedConditionOfTheNormalMatrix) {
   for (int number = 0; number < kCases; ++number) {
-    const PublishedCase published(number);
+    const PublishedCurve published = MakePublishedCurve(number);
     const PublishedRun run(published, "lspia/step=optimal", {1});
     const auto [smallest, largest] = NotedEigenvalues(run.context);
     // Both ends are asked for to 1e-3; Ritz values are nearer than their bounds, by as little as
@@ -150,7 +120,7 @@ TEST(PublishedLspia, SeesThePublishedConditionOfTheNormalMatrix) {
 
 TEST(PublishedLspia, HasThePublishedKnots) {
   for (int number = 0; number < kCases; ++number) {
-    const PublishedCase published(number);
+    const PublishedCurve published = MakePublishedCurve(number);
     const CurveFit& fit = *published.problem->curve_fit();
     const Eigen::VectorXd& t = fit.parameters();
     const int n = fit.basis().num_control_points();
@@ -170,7 +140,7 @@ TEST(PublishedLspia, PublishedChebyshevStepsAreTheInverseOfTheLargestEigenvalue)
   // but for 1e-6, and 2 / ((l1 + ln) + (l1 - ln)) = 1 / l1. What is published as Chebyshev's
   // iteration thus is lspia with the step 1 / l1; cycle=10000 does the same.
   for (int number = 0; number < kCases; ++number) {
-    const PublishedCase published(number);
+    const PublishedCurve published = MakePublishedCurve(number);
     const PublishedRun run(published, "chebyshev_lspia/cycle=10000");
     const double step = 1.0 / NotedEigenvalues(run.context).second;
     Objective objective(published.problem.get(), nullptr);
@@ -198,7 +168,7 @@ TEST(PublishedLspia, TheStopRuleIsMetSoonestByAStepThatLeavesAControlPointFarOff
   // It is 62 and 54 times; a third of that must be seen.
   constexpr double kFarther = 20.0;
   for (int number = 0; number < kCases; ++number) {
-    const PublishedCase published(number);
+    const PublishedCurve published = MakePublishedCurve(number);
     const PublishedRun best(published, "newton", {5, 1e-12});
     // |P - P*| <= |g| / (2 ln): of no account beside the distances below.
     ASSERT_EQ(best.outcome.reason, StopReason::kGradientSmall);
@@ -221,7 +191,7 @@ TEST(PublishedLspia, LargestResidualsAreThePublishedOnes) {
   // MaxPointwiseError of the published table, at the counts above. The sums' tolerances are those
   // of squares: half of them here, with the same for where the largest one stands.
   for (int number = 0; number < kCases; ++number) {
-    const PublishedCase published(number);
+    const PublishedCurve published = MakePublishedCurve(number);
     Objective objective(published.problem.get(), nullptr);
     const double optimal[] = {2.55214e-5, 3.83640e-5};
     const double chebyshev[] = {1.08102e-3, 1.50267e-3};
