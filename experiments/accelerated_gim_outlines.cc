@@ -131,14 +131,16 @@ std::vector<PlotPanel> Curves(const ExperimentTables& tables) {
       panel.series.push_back(
           {"data", data.Numbers("x"), data.Numbers("y"), PlotSeries::Style::kPoints, 0});
       const CsvTable drawn = on.Where("solver", solver);
-      int color = 5;
-      for (const std::string& iteration : drawn.Distinct("iteration")) {
+      const auto draw = [&](const std::string& iteration, const std::string& label,
+                            PlotSeries::Style style, int color) {
         const CsvTable curve = drawn.Where("iteration", iteration);
-        panel.series.push_back({iteration == "last" ? "last iteration" : "iteration " + iteration,
-                                curve.Numbers("x"), curve.Numbers("y"), PlotSeries::Style::kLine,
-                                color});
-        color = color == 5 ? 2 : 1;
-      }
+        panel.series.push_back({label, curve.Numbers("x"), curve.Numbers("y"), style, color});
+      };
+      // Dashed on top: the third iteration is near the last.
+      const std::string first = std::to_string(kFirst), second = std::to_string(kSecond);
+      draw(first, "iteration " + first, PlotSeries::Style::kLine, 5);
+      draw("last", "last iteration", PlotSeries::Style::kLine, 1);
+      draw(second, "iteration " + second, PlotSeries::Style::kDashed, 6);
       panels.push_back(std::move(panel));
     }
   }
@@ -203,8 +205,8 @@ Experiment AcceleratedGimOutlines() {
        }}};
   experiment.figures = {
       {"table_1_curves",
-       "Start, iteration 3 and end of LSPIA (left) and L-BFGS (right), native stop rules.", 2,
-       &Curves},
+       "Start, iteration 3 (dashed) and end of LSPIA (left) and L-BFGS (right), native stop rules.",
+       2, &Curves},
       {"table_1_convergence", "Gap of E and |g| against iteration, race.", 2, &Convergence}};
   return experiment;
 }

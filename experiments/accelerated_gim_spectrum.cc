@@ -160,7 +160,7 @@ bool RunParameters(const ExperimentRun& run, ExperimentTables* tables, std::stri
             &on, &runs);
   }
   ProblemRuns on("dolphin", dolphin, run.repetitions);
-  AddRuns("dolphin, uniform", {kOptimal, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
+  AddRuns("the dolphin as it is", {kOptimal, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
   return true;
 }
 

@@ -68,10 +68,8 @@ bool RunCurves(const ExperimentRun& run, ExperimentTables* tables, std::string* 
 /// One number of the run by the published rule; NaN if there is none.
 double Published(const ExperimentTables& tables, const std::string& problem, const char* solver,
                  const char* column) {
-  const CsvTable rows = tables.at("")
-                            .Where("rule", kPublishedRule)
-                            .Where("problem", problem)
-                            .Where("solver", solver);
+  const CsvTable rows =
+      tables.at("").Where("rule", kPublishedRule).Where("problem", problem).Where("solver", solver);
   return rows.num_rows() == 1 ? rows.Number(0, column) : std::nan("");
 }
 
@@ -92,12 +90,11 @@ Judgement JudgeMisleading(const ExperimentTables& tables) {
     const bool counts = std::abs(soon - 7.0) <= 1.0 && std::abs(late - 78.0) <= 1.0;
     agree += counts && largest >= 0.5 * kFarther ? 1 : 0;
     farther += soon < late && largest > 1.0 ? 1 : 0;
-    judgement.because += (judgement.because.empty() ? "" : "; ") + problem + ": " +
-                         NumberText(soon) + " iterations against " + NumberText(late) + ", and " +
-                         Rounded(largest, 0) +
-                         " times as far in the largest distance of a control point, " +
-                         Rounded(ratio("norm"), 1) + " times in |P - P*|, " +
-                         Rounded(std::sqrt(ratio("gap")), 1) + " times in |A (P - P*)|";
+    judgement.because +=
+        (judgement.because.empty() ? "" : "; ") + problem + ": " + NumberText(soon) +
+        " iterations against " + NumberText(late) + ", and " + Rounded(largest, 0) +
+        " times as far in the largest distance of a control point, " + Rounded(ratio("norm"), 1) +
+        " times in |P - P*|, " + Rounded(std::sqrt(ratio("gap")), 1) + " times in |A (P - P*)|";
   }
   if (judged < kCurves) return judgement;
   judgement.verdict = agree == judged ? ClaimVerdict::kHolds
@@ -140,7 +137,8 @@ Experiment AcceleratedGimStopRule() {
       "by the published rule |A'r_k|^2 < 1e-6 |A'r_0|^2. A'r weighs an error along an eigenvector "
       "of A'A with its eigenvalue. The step 1 / C, C the largest column sum, takes away what "
       "belongs to large eigenvalues at once, and the rule is met; what belongs to the smallest one "
-      "(22 times smaller) is left, and sits in a few control points near the ends. The optimal step "
+      "(22 times smaller) is left, and sits in a few control points near the ends. The optimal "
+      "step "
       "lowers both alike. So a comparison of counts by this rule compares different accuracies.";
   experiment.run = &RunCurves;
   experiment.shown = [](const ExperimentTables& tables) {
@@ -155,10 +153,11 @@ Experiment AcceleratedGimStopRule() {
        "a control point from its least-squares place is at least 29 times that of the optimal "
        "step, in part where it is larger after fewer iterations on one",
        &JudgeMisleading}};
-  experiment.figures = {{"stop_rule_distance",
-                         "Left: what the rule looks at; both runs end at the same level. Right: how "
-                         "far the farthest control point is from its place at the same iterations.",
-                         2, &RuleAndDistance}};
+  experiment.figures = {
+      {"stop_rule_distance",
+       "Left: what the rule looks at; both runs end at the same level. Right: how "
+       "far the farthest control point is from its place at the same iterations.",
+       2, &RuleAndDistance}};
   return experiment;
 }
 

@@ -61,8 +61,8 @@ std::string NamedTics(const std::vector<std::string>& names) {
 int LegendWidth(const PlotPanel& panel) {
   std::size_t longest = 0;
   for (const PlotSeries& series : panel.series) longest = std::max(longest, series.label.size());
-  constexpr double kSmaller = 0.8;
-  constexpr int kMark = 7;
+  constexpr double kSmaller = 0.7;
+  constexpr int kMark = 6;
   const auto shown = static_cast<double>(std::min(longest, kMostText));
   return panel.legend && longest > 0 ? kMark + static_cast<int>(kSmaller * shown) : 2;
 }

@@ -62,8 +62,8 @@ std::string VerdictLines(const ReproductionResult& result) {
     text += experiment.experiment->title + (experiment.taken_over ? " (taken over)" : "") + "\n";
     for (std::size_t k = 0; k < experiment.judgements.size(); ++k) {
       const Judgement& judgement = experiment.judgements[k];
-      text += "  \"" + experiment.experiment->claims[k].quote +
-              "\": " + ToString(judgement.verdict) + "\n    " + judgement.because + "\n";
+      text += "  " + experiment.experiment->claims[k].quote + ": " + ToString(judgement.verdict) +
+              "\n    " + judgement.because + "\n";
     }
   }
   return text;

@@ -30,6 +30,13 @@ TEST_F(ReproduceCommand, WritesThePageOfOneExperiment) {
   }
 }
 
+TEST_F(ReproduceCommand, TakesARunThatMustDivergeForARow) {
+  // An eigenvalue of diag(N)^-1 N is above 2 on the dolphin: docs/solvers/jacobi_pia.md.
+  const Ended ended = Reproduce({"accelerated-gim", "--only=spectrum", "--repetitions=1"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ReadFile(folder_ / "out/spectrum.csv"), HasSubstr("jacobi_pia/w=1,diverged"));
+}
+
 TEST_F(ReproduceCommand, TakesOverFinishedExperiments) {
   const std::vector<std::string> arguments = {"accelerated-gim", "--only=figure_1",
                                               "--repetitions=1", "--resume"};
