@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
@@ -58,18 +59,21 @@ void MeasureDistances(const CurveFit& fit, const Points& control_points, double 
   const ClosestPoint closest(curve);
   const Points at_parameters = curve.Sample(fit.parameters());
   const Points& points = fit.data().points;
+  Eigen::VectorXd feet = fit.parameters();
+  Eigen::VectorXd squared_distances;
+  closest.FindAll(points, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+                  &feet, &squared_distances);
   double squares = 0.0;
   double squares_orthogonal = 0.0;
   double largest_orthogonal = 0.0;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     const double squared = (at_parameters.row(i) - points.row(i)).squaredNorm();
-    const FootPoint foot = closest.Find(points.row(i).data(), fit.parameters()[i]);
     const double weight = fit.data().weights.has_value() ? (*fit.data().weights)[i] : 1.0;
     squares += squared;
     report->max = std::max(report->max, std::sqrt(squared));
-    squares_orthogonal += foot.squared_distance;
-    largest_orthogonal = std::max(largest_orthogonal, foot.squared_distance);
-    report->energy_at_foot_points += term_weight * weight * foot.squared_distance;
+    squares_orthogonal += squared_distances[i];
+    largest_orthogonal = std::max(largest_orthogonal, squared_distances[i]);
+    report->energy_at_foot_points += term_weight * weight * squared_distances[i];
   }
   const auto m = static_cast<double>(points.rows());
   report->rms = std::sqrt(squares / m);

@@ -4,56 +4,69 @@
 #include <vector>
 
 #include "splines/bspline_curve.h"
+#include "splines/curve_distance.h"
+#include "splines/distance_piece.h"
 
 namespace batten {
 
 struct FootPoint {
   double parameter = 0.0;
   double squared_distance = 0.0;
-  int num_pieces = 0;  // in which it was looked for by Newton's method: the work
+  /// No point of the curve is nearer: proven by bounds on every stretch, to rounding.
+  double lower_bound = 0.0;
+  /// If asked for: another point, farther along the curve than 1e-6 of its domain, is as near,
+  /// within the tolerance; `other` is its parameter.
+  bool tie = false;
+  double other = 0.0;
+  int num_pieces = 0;  ///< Stretches that had to be looked at: the work.
 };
 
-/// Closest points on one curve. Between evenly spread samples (8 per span and degree, step h) the
-/// curve stays within e = h^2 max |C''| / 8 of its chords; a tree of bounding boxes over runs of
-/// chords finds all pieces that can hold the foot, and in each of them Newton's method solves
-/// (C(t) - Q) . C'(t) = 0 (Piegl & Tiller, sec. 6.1), safeguarded: it stays in the piece, and after
-/// a step that raises the distance comes a bisection. A piece in which the distance has several
-/// minima may give the wrong one, so that the distance is too large by 2 e at most. Where distances
-/// cannot be told apart, on a curve that passes through the point or runs as flat as rounding lets
-/// it, the search ends: bounds alone would exclude nothing.
+/// Closest points on one curve: a global search that cannot miss the nearest stretch. A tree of
+/// boxes around Bezier points excludes what is too far; of the rest, stretches are halved until
+/// their squared distance is seen to be monotone or convex (DistancePiece), or to be no more than
+/// the tolerance below the best. In a convex stretch the foot is found by the second-order step of
+/// Hu & Wallner, "A second order algorithm for orthogonal projection onto curves and surfaces",
+/// CAGD 22, 2005, safeguarded by a bracket and bisection.
 class ClosestPoint {
  public:
+  /// Of the larger of the curve's size and the distance.
+  static constexpr double kTolerance = 1e-12;
+
   explicit ClosestPoint(const BsplineCurve& curve);  ///< Keeps a reference to `curve`.
-  /// `point` has d coordinates. `start` (a parameter in the domain) competes with all pieces, so
+  /// What a certificate leaves open for a point at `distance`: kTolerance, or what the coordinates'
+  /// own rounding makes of it on curves far from the origin.
+  double Tolerance(double distance) const;
+  /// `point` has d coordinates. `start` (a parameter in the domain) competes with all stretches, so
   /// that the result is never farther than C(start), to rounding, and equally far feet do not take
-  /// turns. A point or curve that is not finite gives some parameter and a distance that is not
-  /// finite.
-  FootPoint Find(const double* point, double start) const;
+  /// turns; the nearer it is, the less is searched. A point or curve that is not finite gives some
+  /// parameter and a distance that is not finite.
+  FootPoint Find(const double* point, double start, bool look_for_tie = false) const;
+  /// Feet of all rows of `points`, each started from its entry of `parameters`, which they replace.
+  /// `threads` >= 1 share the rows in ranges: the bits do not depend on their number.
+  /// `squared_distances` may be null.
+  void FindAll(const Points& points, int threads, Eigen::VectorXd* parameters,
+               Eigen::VectorXd* squared_distances) const;
 
  private:
   struct Box {
     double low[kMaxDimension];
     double high[kMaxDimension];
   };
-  /// A chord's distance less what the curve may be off it, and the parameter of its nearest point.
-  struct Piece {
-    int index;
-    double squared_bound;
-    double start;
-  };
-  void SampleSpans();
+  class Search;
+  int PieceOf(int span, double t) const;
+  double PieceLow(int piece) const;
+  double PieceHigh(int piece) const;
+  BezierStretch Stretch(int piece) const;
+  void MakePieces();
   void BuildBoxes();
-  Piece MakePiece(const double* point, int index) const;
-  bool CanBeNearer(int level, int index, double squared_bound, double squared_distance) const;
 
   const BsplineCurve& curve_;
-  std::vector<int> spans_;          // those not empty
-  std::vector<double> deviations_;  // e, one a span
-  double size_ = 0.0;               // largest coordinate of a control point
-  double rounding_ = 0.0;           // what samples and boxes are off at most
-  std::vector<double> sample_parameters_;
-  Points samples_;
-  // levels_[0]: boxes of runs of pieces; each next: of pairs.
+  std::vector<int> spans_;        // those not empty
+  std::vector<int> span_places_;  // where in spans_, by span less the first one
+  std::vector<double> beziers_;   // p + 1 points of d coordinates, kPiecesPerSpan a span
+  double size_ = 0.0;             // of the curve: longest side of its box
+  double rounding_ = 0.0;         // what a coordinate of a point of the curve is off at most
+  // levels_[0]: boxes of pieces; each next: of pairs.
   std::vector<std::vector<Box>> levels_;
 };
 
