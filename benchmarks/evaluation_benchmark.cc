@@ -109,7 +109,8 @@ class NativeCeresFit {
       family.Bind(x_, block, &offsets, &sizes);
       std::vector<double*> pointers;
       for (const int offset : offsets) pointers.push_back(x_.data() + offset);
-      problem_.AddResidualBlock(family.MakeCeresCostFunction(block).release(), nullptr, pointers);
+      problem_.AddResidualBlock(family.MakeCeresCostFunction(x_, block).release(), nullptr,
+                                pointers);
     }
   }
 

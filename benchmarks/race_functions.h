@@ -93,7 +93,8 @@ class RaceFamily final : public BlockFamily {
     offsets->assign(1, 0);
     sizes->assign(1, static_cast<int>(x.size()));
   }
-  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(int /*block*/) const override {
+  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& /*x*/,
+                                                             int /*block*/) const override {
     return nullptr;
   }
 

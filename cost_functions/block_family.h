@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "cost_functions/free_sites.h"
 #include "splines/row_block.h"
 
 namespace batten {
@@ -53,9 +54,14 @@ class BlockFamily {
   /// all coordinates, and there is no loss; read from the functor's derivative. Null otherwise.
   virtual const RowSource* rows() const { return nullptr; }
 
-  /// Ceres' cost function of one block, its parameter blocks in the order of Bind; the loss and
-  /// weight are to be given to Ceres beside it.
-  virtual std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(int block) const = 0;
+  /// The points behind the blocks, if E is sum_i w_i |C(t_i) - Q_i|^2 with t_i a variable and there
+  /// is no loss. Null otherwise.
+  virtual const FreeSites* free_sites() const { return nullptr; }
+
+  /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x;
+  /// the loss and weight are to be given to Ceres beside it.
+  virtual std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& x,
+                                                                     int block) const = 0;
   /// weight * loss for ceres::Problem, null where both are trivial. Each call makes a new one.
   std::unique_ptr<ceres::LossFunction> MakeCeresLoss() const;
 

@@ -66,7 +66,8 @@ void CostFunctionFamily::Bind(const Eigen::VectorXd& /*x*/, int block, std::vect
   *sizes = bound.cost->parameter_block_sizes();
 }
 
-std::unique_ptr<ceres::CostFunction> CostFunctionFamily::MakeCeresCostFunction(int block) const {
+std::unique_ptr<ceres::CostFunction> CostFunctionFamily::MakeCeresCostFunction(
+    const Eigen::VectorXd& /*x*/, int block) const {
   return std::make_unique<SharedCostFunction>(blocks_[static_cast<std::size_t>(block)].cost);
 }
 

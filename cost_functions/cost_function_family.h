@@ -30,7 +30,8 @@ class CostFunctionFamily final : public BlockFamily {
   int num_residuals() const override;  ///< 0 as long as there is no block.
   void Bind(const Eigen::VectorXd& x, int block, std::vector<int>* offsets,
             std::vector<int>* sizes) const override;
-  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(int block) const override;
+  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& x,
+                                                             int block) const override;
 
  private:
   struct Block {

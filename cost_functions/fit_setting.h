@@ -41,7 +41,8 @@ struct FitSetting {
   double scale = 1.0;            // a power of two
   double size = 1.0;             // longest side of the data's box, scaled: in (0.5, 1]
   int control_point_offset = 0;  // P_j stands at x[control_point_offset + j * dimension]
-  const Sites* data = nullptr;   // the data points at their fixed parameters
+  int parameter_offset = -1;     // t_i stands at x[parameter_offset + i]; -1: they are fixed
+  const Sites* data = nullptr;   // the data points at their fixed parameters, or at their start
   /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).
   bool use_static_sizes = true;
 };

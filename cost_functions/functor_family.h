@@ -60,7 +60,8 @@ class FunctorFamily final : public BlockFamily, private RowSource {
     return rows_are_alike_ && loss() == nullptr ? this : nullptr;
   }
 
-  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(int block) const override {
+  std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& /*x*/,
+                                                             int block) const override {
     return WithKernel([&](const auto& kernel) {
       return MakeFunctorCostFunction(functor_, kernel.MakeSite(block, SpanOf(block)),
                                      *setting_.basis, setting_.dimension);

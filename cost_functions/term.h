@@ -17,6 +17,7 @@ struct TermInfo {
   std::string source;               ///< Where it is from.
   bool affine = false;              ///< Residual affine in the control points, coordinates alike.
   std::vector<OptionInfo> options;  ///< Its own; every term also has CommonTermOptions().
+  bool free_parameters = false;     ///< Needs parameters that are variables.
 };
 
 /// weight=1, loss=none|huber|cauchy|tukey|soft_l1, loss_scale=1 (in units of the data's size).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cost_functions/free_parameter.h"
 #include "cost_functions/interpolation.h"
 #include "cost_functions/term.h"
 
@@ -11,6 +12,7 @@ namespace {
 // The built-in terms: one line each.
 constexpr std::unique_ptr<Term> (*kBuiltInTerms[])() = {
     &MakeInterpolationTerm,
+    &MakeFreeParameterTerm,
 };
 
 }  // namespace

@@ -147,8 +147,9 @@ double RunControl::StepNorm(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd now = reporter_.Expand(x);
   if (problem_.curve_fit() == nullptr) return (now - before).cwiseAbs().maxCoeff();
   const int d = problem_.curve_fit()->dimension();
+  const Eigen::Index end = problem_.ranges().front().size;  // of the control points
   double largest = 0.0;
-  for (Eigen::Index j = 0; j + d <= now.size(); j += d) {
+  for (Eigen::Index j = 0; j + d <= end; j += d) {
     largest = std::max(largest, (now.segment(j, d) - before.segment(j, d)).norm());
   }
   return largest;

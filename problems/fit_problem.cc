@@ -10,6 +10,16 @@
 
 namespace batten {
 
+const char* ToString(ParameterKind kind) {
+  return kind == ParameterKind::kFixed ? "fixed" : "free";
+}
+
+bool FromString(const std::string& text, ParameterKind* kind) {
+  if (text != "fixed" && text != "free") return false;
+  *kind = text == "fixed" ? ParameterKind::kFixed : ParameterKind::kFree;
+  return true;
+}
+
 Points CurveFit::ControlPoints(const Eigen::VectorXd& x) const {
   const int n = basis_->num_control_points();
   Points points(n, dimension());
@@ -30,6 +40,21 @@ Eigen::VectorXd CurveFit::Variables(const Points& control_points) const {
     }
   }
   return x;
+}
+
+Eigen::VectorXd CurveFit::Variables(const Points& control_points, const Eigen::VectorXd& t) const {
+  const Eigen::VectorXd points = Variables(control_points);
+  if (!has_free_parameters()) return points;
+  Eigen::VectorXd x(points.size() + t.size());
+  x << points, t;
+  return x;
+}
+
+Eigen::VectorXd CurveFit::Parameters(const Eigen::VectorXd& x) const {
+  if (!has_free_parameters()) return parameters_;
+  Eigen::VectorXd t = x.segment(setting_.parameter_offset, parameters_.size());
+  for (double& value : t) value = basis_->Wrap(value);
+  return t;
 }
 
 BsplineCurve CurveFit::Curve(const Eigen::VectorXd& x) const {
@@ -180,64 +205,32 @@ bool CurveFit::Scale(std::string* error) {
   return true;
 }
 
-/// Each control point starts on the polyline through the data in the order of their parameters, at
-/// the Greville abscissa of its basis function.
-Points CurveFit::StartPoints() const {
-  const int n = basis_->num_control_points();
-  Points start(n, dimension());
-  if (spec_.start == "centroid") {
-    start.rowwise() = data_.points.colwise().mean();
-    return start;
+bool CurveFit::CheckEnds(std::string* error) const {
+  if (!spec_.hold_ends) return true;
+  if (spec_.parameter_kind == ParameterKind::kFree && !spec_.closed) return true;
+  *error = std::string("ends are to be held, but ") +
+           (spec_.closed ? "the curve is closed" : "the parameters are fixed");
+  return false;
+}
+
+/// Variables behind the control points.
+bool CurveFit::AddParameters(Problem* problem, std::string* error) {
+  setting_.parameter_offset = problem->num_variables();
+  const auto last = parameters_.size() - 1;
+  if (spec_.hold_ends) {
+    parameters_[0] = basis_->domain_begin();
+    parameters_[last] = basis_->domain_end();
   }
-  const auto m = static_cast<int>(parameters_.size());
-  // Empty while the data already are in the order of their parameters, as they mostly are.
-  std::vector<int> order;
-  Eigen::VectorXd reordered;
-  if (!sorted_) {
-    order.resize(static_cast<std::size_t>(m));
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [this](int a, int b) { return parameters_[a] < parameters_[b]; });
-    reordered.resize(m);
-    for (int k = 0; k < m; ++k) reordered[k] = parameters_[order[static_cast<std::size_t>(k)]];
-  }
-  const Eigen::VectorXd& sorted = order.empty() ? parameters_ : reordered;
-  const auto item = [&order](int k) {
-    return order.empty() ? k : order[static_cast<std::size_t>(k)];
+  problem->AddVariables("parameters", parameters_);
+  if (!spec_.hold_ends) return true;
+  const auto held = [&](Eigen::Index i) {
+    LinearConstraint constraint;
+    constraint.name = "t_" + std::to_string(i) + " held";
+    constraint.coefficients = {{setting_.parameter_offset + static_cast<int>(i), 1.0}};
+    constraint.value = parameters_[i];
+    return constraint;
   };
-  std::ptrdiff_t near = 0;  // abscissae mostly grow from one control point to the next
-  const auto first_above = [&](double t) {
-    if (sorted[near] > t) near = 0;
-    const double above = std::nextafter(t, std::numeric_limits<double>::infinity());
-    const std::ptrdiff_t found = FirstNotBelow(sorted.data(), near, m, above);
-    near = std::min<std::ptrdiff_t>(found, m - 1);
-    return static_cast<int>(found);
-  };
-  const double period = basis_->domain_length();
-  for (int j = 0; j < n; ++j) {
-    const double t = basis_->Greville(j);
-    const int next = first_above(t);
-    int left = next - 1;
-    int right = next;
-    double shift_left = 0.0;
-    double shift_right = 0.0;
-    if (spec_.closed) {
-      if (left < 0) left = m - 1, shift_left = -period;
-      if (right == m) right = 0, shift_right = period;
-    } else {
-      left = std::max(left, 0);
-      right = std::min(right, m - 1);
-    }
-    const int a = item(left);
-    const int b = item(right);
-    const double begin = parameters_[a] + shift_left;
-    const double length = parameters_[b] + shift_right - begin;
-    const double part = length > 0.0 ? (t - begin) / length : 0.0;
-    start.row(j) = data_.points.row(a);
-    // Exactly the data point where the abscissa hits its parameter.
-    if (part > 0.0) start.row(j) += part * (data_.points.row(b) - data_.points.row(a));
-  }
-  return start;
+  return problem->SetLinearConstraints({held(0), held(last)}, error);
 }
 
 std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
@@ -245,12 +238,13 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error) || !fit->PlaceParameters(error)) {
     return nullptr;
   }
-  if (fit->spec_.start != "data" && fit->spec_.start != "centroid") {
-    *error = "start is " + fit->spec_.start + "; allowed: data, centroid";
-    return nullptr;
+  const bool is_free = fit->spec_.parameter_kind == ParameterKind::kFree;
+  if (fit->spec_.terms.empty()) {
+    fit->spec_.terms.push_back({is_free ? "free_parameter" : "interpolation", {}, nullptr});
   }
-  if (fit->spec_.terms.empty()) fit->spec_.terms.push_back({"interpolation", {}, nullptr});
-  if (!fit->Scale(error)) return nullptr;
+  if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->Scale(error)) return nullptr;
+  const Points start = fit->StartPoints();
+  if (is_free) fit->StartParameters(start);
   fit->sites_.size = static_cast<int>(fit->parameters_.size());
   fit->sites_.parameters = fit->parameters_.data();
   fit->sites_.points = fit->data_.points.data();
@@ -261,7 +255,8 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
 
   auto problem =
       std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
-  problem->AddVariables("control_points", fit->Variables(fit->StartPoints()));
+  problem->AddVariables("control_points", fit->Variables(start));
+  if (is_free && !fit->AddParameters(problem.get(), error)) return nullptr;
   double largest_weight = 0.0;
   std::set<std::pair<const Term*, std::map<std::string, std::string>>> meanings;
   for (const NameSpec& name : fit->spec_.terms) {

@@ -24,6 +24,11 @@ inline constexpr double kSmallestUnit = 1e-270;
 /// Least of the largest weight of a term: with none there is nothing to fit.
 inline constexpr double kSmallestTermWeight = 1e-30;
 
+/// What the data's parameters are: given once and for all, or variables beside the control points.
+enum class ParameterKind { kFixed, kFree };
+const char* ToString(ParameterKind kind);
+bool FromString(const std::string& text, ParameterKind* kind);
+
 /// What is to be fitted to a data set; every field as in problem files and flags.
 struct FitSpec {
   std::string name;
@@ -37,8 +42,15 @@ struct FitSpec {
   std::vector<double> given_knots;                  // not empty: instead of the rule
   std::optional<std::pair<double, double>> domain;  // with given parameters; default: their range,
                                                     // closed: [0, 1]
-  std::vector<NameSpec> terms;                      // empty: interpolation
-  std::string start = "data";                       // data | centroid
+  std::vector<NameSpec> terms;                      // empty: interpolation; free: free_parameter
+  /// data: on the polyline through the data; centroid: all in one point; circle, ellipse: around
+  /// the data, of the size of their spread (principal axes).
+  std::string start = "data";
+  Points start_points;  // not empty: these instead, n x d, in user units
+  ParameterKind parameter_kind = ParameterKind::kFixed;
+  /// Free parameters of an open curve: those of the first and last data point stay at the ends of
+  /// the domain.
+  bool hold_ends = false;
 };
 
 /// The curve-fit side of a problem: data, spline space, parameters, and the map between the scaled
@@ -50,14 +62,19 @@ class CurveFit {
   const DataSet& data() const { return data_; }
   const BsplineBasis& basis() const { return *basis_; }
   const FitSetting& setting() const { return setting_; }
-  /// t_i of data point i.
+  /// t_i of data point i; of free ones where they start.
   const Eigen::VectorXd& parameters() const { return parameters_; }
+  bool has_free_parameters() const { return setting_.parameter_offset >= 0; }
+  /// t_i at all variables x, in the domain.
+  Eigen::VectorXd Parameters(const Eigen::VectorXd& x) const;
   int dimension() const { return static_cast<int>(data_.points.cols()); }
   /// Longest side of the data's box, in the user's units; 1 if all points are equal.
   double size() const { return size_; }
   /// Control points in the user's units of all variables x, and back.
   Points ControlPoints(const Eigen::VectorXd& x) const;
   Eigen::VectorXd Variables(const Points& control_points) const;
+  /// All variables of control points and, where they are free, parameters.
+  Eigen::VectorXd Variables(const Points& control_points, const Eigen::VectorXd& t) const;
   BsplineCurve Curve(const Eigen::VectorXd& x) const;
 
   CurveFit(const CurveFit&) = delete;
@@ -71,7 +88,13 @@ class CurveFit {
   /// On the domain of the knots.
   bool PlaceParameters(std::string* error);
   bool Scale(std::string* error);
+  bool CheckEnds(std::string* error) const;
+  bool AddParameters(Problem* problem, std::string* error);
+  bool CheckStart(std::string* error) const;
   Points StartPoints() const;
+  Points StartOnPolyline() const;
+  /// Free parameters start at the feet on a start curve that does not know the data's order.
+  void StartParameters(const Points& start);
 
   FitSpec spec_;
   DataSet data_;

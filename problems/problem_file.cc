@@ -135,6 +135,13 @@ bool ReadReference(const StrictObject& file, CatalogueEntry* entry) {
          reference.Text("source", kOptional, &source);
 }
 
+bool ReadKind(const StrictObject& file, FitSpec* spec) {
+  std::string kind = ToString(spec->parameter_kind);
+  return file.Word("parameter_kind", kOptional, {"fixed", "free"}, &kind) &&
+         FromString(kind, &spec->parameter_kind) &&
+         file.Flag("hold_ends", kOptional, &spec->hold_ends);
+}
+
 }  // namespace
 
 bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string* error) {
@@ -151,12 +158,13 @@ bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string
   read.path = path;
   FitSpec* spec = &read.spec;
   if (!file.HasOnly({"name", "summary", "data", "spline", "parameters", "terms", "start",
-                     "reference", "citation"}) ||
+                     "parameter_kind", "hold_ends", "reference", "citation"}) ||
       !ReadName(file, &read.name) || !file.Text("summary", kOptional, &read.summary) ||
       !ReadData(file, &read) || !ReadParameters(file, spec) || !ReadSpline(file, spec) ||
       !ReadTerms(file, spec) ||
-      !file.Word("start", kOptional, {"data", "centroid"}, &spec->start) ||
-      !ReadReference(file, &read) || !file.Text("citation", kOptional, &read.citation)) {
+      !file.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) ||
+      !ReadKind(file, spec) || !ReadReference(file, &read) ||
+      !file.Text("citation", kOptional, &read.citation)) {
     return false;
   }
   spec->name = read.name;

@@ -126,7 +126,7 @@ void CeresProblem::AddTerms() {
   for (const Problem::TermInstance& term : problem.terms()) {
     for (int block = 0; block < term.family->size(); ++block) {
       term.family->Bind(problem.start(), block, &begins, &sizes);
-      auto cost = free.Rewrite(term.family->MakeCeresCostFunction(block), &begins);
+      auto cost = free.Rewrite(term.family->MakeCeresCostFunction(problem.start(), block), &begins);
       AddBlock(std::move(cost), term.family->MakeCeresLoss(), begins);
     }
   }

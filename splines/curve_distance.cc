@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-
 namespace batten {
 namespace {
 
@@ -31,9 +30,9 @@ double CircleStep(const double* to_point, const double* first, const double* sec
   // Angle at the circle's centre from C to the point's place in the osculating plane.
   const double angle = std::atan2(curvature * tangential, 1.0 - Dot(to_point, bend, d));
   constexpr double kStraight = 1e-12;  // angle / curvature is tangential then
-  const double arc = curvature * std::abs(tangential) > kStraight ? angle / curvature
-                                                                 : tangential /
-                                                                       (1.0 - Dot(to_point, bend, d));
+  const double arc = curvature * std::abs(tangential) > kStraight
+                         ? angle / curvature
+                         : tangential / (1.0 - Dot(to_point, bend, d));
   // Arc length is speed dt + along / speed dt^2 / 2 to second order.
   return arc / speed - along * arc * arc / (2.0 * squared_speed * squared_speed);
 }
@@ -96,8 +95,8 @@ CurveDistance FindFoot(const BezierStretch& stretch, const double* point, double
     const double by_newton = at.curvature > 0.0 ? -at.slope / at.curvature : 0.0;
     // Once steps are small both agree, and Newton's carries fewer roundings.
     constexpr double kSmall = 1e-6;
-    const double by = std::abs(by_newton) > kSmall * (high - low) && by_circle != 0.0 ? by_circle
-                                                                                     : by_newton;
+    const double by =
+        std::abs(by_newton) > kSmall * (high - low) && by_circle != 0.0 ? by_circle : by_newton;
     if (by != 0.0) next = std::clamp(at.t + by, low, high);
     if ((next == low && low_is_tried) || (next == high && high_is_tried)) {
       next = low + 0.5 * (high - low);

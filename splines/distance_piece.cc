@@ -92,7 +92,10 @@ void DistancePiece::Look() {
   }
   lower_bound_ = std::max(0.0, least - noise);
   if (!std::isfinite(least)) lower_bound_ = std::numeric_limits<double>::infinity();
-  shape_ = rises ? Shape::kRises : falls ? Shape::kFalls : convex ? Shape::kConvex : Shape::kUnknown;
+  shape_ = rises    ? Shape::kRises
+           : falls  ? Shape::kFalls
+           : convex ? Shape::kConvex
+                    : Shape::kUnknown;
 }
 
 void DistancePiece::Split(DistancePiece* left, DistancePiece* right) const {
@@ -130,8 +133,7 @@ void BezierPoints(int degree, int dimension, const double* knots, int span, cons
         }
       }
     }
-    std::copy(level + degree * dimension, level + (degree + 1) * dimension,
-              points + i * dimension);
+    std::copy(level + degree * dimension, level + (degree + 1) * dimension, points + i * dimension);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include "problems/catalogue.h"
+#include "tools/fitted_points.h"
 #include "tools/knot_file.h"
 #include "tools/run_flags.h"
 
@@ -30,11 +31,19 @@ DEFINE_string(
     domain, "",
     "With --parameters=given: where the curve begins and ends, as two numbers. Not given: "
     "the range of the parameters; closed: 0,1.");
-DEFINE_string(terms, "interpolation",
-              "Terms of the energy with their options, separated by commas (batten list terms).");
+DEFINE_string(
+    terms, "",
+    "Terms of the energy with their options, separated by commas (batten list terms). Not "
+    "given: interpolation; with free parameters free_parameter.");
 DEFINE_string(start, kDefaults.start,
-              "Where the control points start: on the polyline through the data, or all at its "
-              "centroid.");
+              "Where the control points start: on the polyline through the data, all at its "
+              "centroid, on a circle or ellipse around it, or those of another fit (a file "
+              "written by --out). Free parameters start at the feet on a circle, ellipse or fit.");
+DEFINE_string(parameter_kind, batten::ToString(kDefaults.parameter_kind),
+              "fixed: the parameters stay what they are; free: they are unknowns beside the "
+              "control points.");
+DEFINE_bool(hold_ends, kDefaults.hold_ends,
+            "Free parameters of an open curve: the first and the last one stay at the ends.");
 
 namespace batten {
 namespace {
@@ -116,6 +125,21 @@ bool ApplyTerms(FitSpec* spec, std::string* error) {
   return is_good;
 }
 
+bool ApplyStart(FitRequest* request, std::string* error) {
+  FitSpec* spec = &request->spec;
+  spec->start_points.resize(0, 0);
+  for (const char* word : {"data", "centroid", "circle", "ellipse"}) {
+    if (FLAGS_start == word) {
+      spec->start = word;
+      return true;
+    }
+  }
+  request->input_files.push_back(FLAGS_start);
+  if (ReadFittedControlPoints(FLAGS_start, &spec->start_points, error)) return true;
+  *error = "--start: " + *error;
+  return false;
+}
+
 bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
                std::string* error) {
   const bool has_problem = WasGiven("problem");
@@ -153,7 +177,9 @@ std::vector<FlagInfo> FitRequestFlags() {
           WordFlag("ends", {"end_interpolating", "floating"}),
           TextFlag("domain", "A,B", kAllowedDomain),
           TextFlag("terms", "TERMS", "terms of batten list terms, separated by commas"),
-          WordFlag("start", {"data", "centroid"})};
+          TextFlag("start", "START", "data, centroid, circle, ellipse, or a file of batten fit"),
+          WordFlag("parameter_kind", {"fixed", "free"}),
+          SwitchFlag("hold_ends")};
 }
 
 bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* request,
@@ -163,7 +189,9 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
   if (WasGiven("closed")) spec->closed = FLAGS_closed;
   if (WasGiven("degree")) spec->degree = FLAGS_degree;
   if (WasGiven("control_points")) spec->control_points = FLAGS_control_points;
-  if (WasGiven("start")) spec->start = FLAGS_start;
+  if (WasGiven("start") && !ApplyStart(request, error)) return false;
+  if (WasGiven("parameter_kind")) FromString(FLAGS_parameter_kind, &spec->parameter_kind);
+  if (WasGiven("hold_ends")) spec->hold_ends = FLAGS_hold_ends;
   if (WasGiven("parameters")) {
     Parameterization rule = Parameterization::kUniform;
     spec->parameters.reset();

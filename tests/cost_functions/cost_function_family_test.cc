@@ -160,7 +160,7 @@ TEST(CostFunctionFamily, GivesCeresTheSameEnergyAndGradient) {
       family->Bind(x, block, &offsets, &sizes);
       std::vector<double*> parameters;
       for (const int offset : offsets) parameters.push_back(x.data() + offset);
-      problem.AddResidualBlock(family->MakeCeresCostFunction(block).release(),
+      problem.AddResidualBlock(family->MakeCeresCostFunction(x, block).release(),
                                family->MakeCeresLoss().release(), parameters);
     }
     double cost = 0.0;
@@ -176,7 +176,7 @@ TEST(CostFunctionFamily, GivesCeresTheSameEnergyAndGradient) {
 
 TEST(CostFunctionFamily, CeresCostFunctionsOutliveTheFamily) {
   auto family = MakeFamily(1.0, nullptr);
-  const std::unique_ptr<ceres::CostFunction> cost = family->MakeCeresCostFunction(2);
+  const std::unique_ptr<ceres::CostFunction> cost = family->MakeCeresCostFunction(SomePoint(), 2);
   family.reset();
   const double a[] = {0.3, -1.7};
   const double* parameters[] = {a};

@@ -23,7 +23,7 @@ inline const double kStep = std::cbrt(kEpsilon);
 inline const double kDifferenceTolerance = 10.0 * kStep * kStep;
 
 /// Data without any symmetry around a spline, and where its control points stand in x: behind three
-/// other variables and before one.
+/// other variables and before one, which the data's parameters follow.
 class ExampleFit {
  public:
   static constexpr int kOffset = 3;
@@ -41,6 +41,7 @@ class ExampleFit {
     setting.basis = &basis;
     setting.dimension = dimension;
     setting.control_point_offset = kOffset;
+    setting.parameter_offset = kOffset + basis.num_control_points() * dimension + 1;
     setting.data = &sites;
     sites.size = num_points;
     sites.parameters = parameters.data();
@@ -51,11 +52,25 @@ class ExampleFit {
   ExampleFit(const ExampleFit&) = delete;
   ExampleFit& operator=(const ExampleFit&) = delete;
 
-  int num_variables() const { return kOffset + basis.num_control_points() * setting.dimension + 1; }
+  int num_variables() const { return setting.parameter_offset + sites.size; }
   Eigen::VectorXd RandomVariables(std::mt19937* random) const {
     Eigen::VectorXd x(num_variables());
     for (double& entry : x) entry = RandomBetween(-1.0, 1.0, random);
+    // Inside spans: at knots a curve of degree 1 or 2 has no second derivative.
+    const std::vector<int> spans = NonEmptySpans(basis);
+    for (int i = 0; i < sites.size; ++i) {
+      const int span = spans[(*random)() % spans.size()];
+      x[setting.parameter_offset + i] = InSpan(basis, span, RandomBetween(0.05, 0.95, random));
+    }
     return x;
+  }
+  /// Bound of the third derivative of a curve with control points of size 1, at least 1.
+  double Bend() const {
+    double shortest = 1.0;
+    for (const int span : NonEmptySpans(basis)) {
+      shortest = std::min(shortest, basis.knots()[span + 1] - basis.knots()[span]);
+    }
+    return std::pow(2.0 * basis.degree() / shortest, 3);
   }
   double weight(int item) const { return sites.weights == nullptr ? 1.0 : weights[item]; }
   /// Q of one item, scaled.
@@ -125,8 +140,8 @@ inline Eigen::VectorXd Difference(
 
 /// Gradient, Jacobian and Hessian products of a family against central differences at x.
 inline void ExpectDerivativesOf(const BlockFamily& family, const Eigen::VectorXd& x,
-                                std::mt19937* random) {
-  const double size = 1.0 + EnergyAt(family, x);
+                                std::mt19937* random, double third_derivative = 1.0) {
+  const double size = third_derivative * (1.0 + EnergyAt(family, x));
   const Eigen::VectorXd gradient = GradientAt(family, x);
   const Eigen::MatrixXd jacobian = JacobianAt(family, x);
   for (Eigen::Index i = 0; i < x.size(); ++i) {

@@ -163,8 +163,8 @@ TEST_P(AnyFunctor, IsSeenByEveryPath) {
       changed.Bind(x, block, &offsets, &sizes);
       for (const int offset : offsets) parameters.push_back(x.data() + offset);
       Eigen::VectorXd from_ceres(changed.num_residuals());
-      ASSERT_TRUE(changed.MakeCeresCostFunction(block)->Evaluate(parameters.data(),
-                                                                 from_ceres.data(), nullptr));
+      ASSERT_TRUE(changed.MakeCeresCostFunction(x, block)->Evaluate(parameters.data(),
+                                                                    from_ceres.data(), nullptr));
       const auto d = changed.num_residuals();
       EXPECT_EQ(from_ceres, ResidualsAt(changed, x).segment(block * d, d));
     }

@@ -132,7 +132,7 @@ TEST_P(Interpolation, GivesCeresTheSameEnergyAndGradientToTheLastBit) {
         std::vector<double*> parameters;
         family->Bind(x, block, &offsets, &sizes);
         for (const int offset : offsets) parameters.push_back(x.data() + offset);
-        const auto id = problem.AddResidualBlock(family->MakeCeresCostFunction(block).release(),
+        const auto id = problem.AddResidualBlock(family->MakeCeresCostFunction(x, block).release(),
                                                  family->MakeCeresLoss().release(), parameters);
         double cost = 0.0;
         double energy = 0.0;

@@ -145,7 +145,8 @@ TEST(ClosestPointCertificate, NoPointIsNearerThanTheBoundInAHundredThousandCases
 
 TEST(ClosestPointCertificate, ReportsTies) {
   // Two straight legs from a corner, and a point on their bisector: C(t) = (|t|, t) on [-1, 1].
-  const BsplineCurve legs(BasisOf(1, false, {-1, -1, 0, 1, 1}), PointsOf({{1, -1}, {0, 0}, {1, 1}}));
+  const BsplineCurve legs(BasisOf(1, false, {-1, -1, 0, 1, 1}),
+                          PointsOf({{1, -1}, {0, 0}, {1, 1}}));
   const ClosestPoint closest(legs);
   const double between[] = {1.0, 0.0};
   const FootPoint foot = closest.Find(between, 0.51, true);
@@ -172,8 +173,9 @@ TEST(ClosestPointCertificate, ReportsSelfCrossingsAsTies) {
     const double mean = (u + v + w) / 3.0;
     return std::vector<double>{(u * v + v * w + w * u) / 3.0 - 1.0, u * v * w - mean};
   };
-  const BsplineCurve loop(BasisOf(3, false, {a, a, a, a, b, b, b, b}),
-                          PointsOf({point(a, a, a), point(a, a, b), point(a, b, b), point(b, b, b)}));
+  const BsplineCurve loop(
+      BasisOf(3, false, {a, a, a, a, b, b, b, b}),
+      PointsOf({point(a, a, a), point(a, a, b), point(a, b, b), point(b, b, b)}));
   const double origin[] = {0.0, 0.0};
   const FootPoint foot = ClosestPoint(loop).Find(origin, 0.3, true);
   EXPECT_TRUE(foot.tie);
@@ -183,9 +185,8 @@ TEST(ClosestPointCertificate, ReportsSelfCrossingsAsTies) {
 
 TEST(ClosestPointCertificate, TheCentreOfASquareRoundIsATieOfFour) {
   // Four control points at the corners of a square: the curve has its symmetries.
-  const BsplineCurve round(
-      BasisOf(3, true, UniformKnots(3, 4, EndKnots::kPeriodic, 0.0, 1.0)),
-      PointsOf({{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}));
+  const BsplineCurve round(BasisOf(3, true, UniformKnots(3, 4, EndKnots::kPeriodic, 0.0, 1.0)),
+                           PointsOf({{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}));
   const double centre[] = {0.0, 0.0};
   const FootPoint foot = ClosestPoint(round).Find(centre, 0.1, true);
   EXPECT_TRUE(foot.tie);
@@ -220,8 +221,7 @@ TEST(ClosestPointCertificate, CuspsAndStoppedCurvesAreCertified) {
 
 TEST(ClosestPointCertificate, ThreadsDoNotChangeABit) {
   std::mt19937 random(5);
-  const BsplineBasis basis =
-      BasisOf(3, true, UniformKnots(3, 40, EndKnots::kPeriodic, 0.0, 1.0));
+  const BsplineBasis basis = BasisOf(3, true, UniformKnots(3, 40, EndKnots::kPeriodic, 0.0, 1.0));
   const BsplineCurve curve(basis, RandomPoints(40, 2, &random));
   const ClosestPoint closest(curve);
   const Points points = RandomPoints(1001, 2, &random);

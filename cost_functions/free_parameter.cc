@@ -1,0 +1,35 @@
+#include "cost_functions/free_parameter.h"
+
+#include "cost_functions/free_family.h"
+
+namespace batten {
+namespace {
+
+class FreeParameterTerm final : public Term {
+ public:
+  TermInfo Info() const override { return FreeParameterResidual::Info(); }
+  std::unique_ptr<BlockFamily> MakeFamily(const FitSetting& setting, const OptionValues& options,
+                                          std::string* error) const override {
+    if (setting.parameter_offset < 0) {
+      *error = "term free_parameter needs a problem with free parameters; this one's are fixed";
+      return nullptr;
+    }
+    return std::make_unique<FreeFamily<FreeParameterResidual>>(
+        setting, FreeParameterResidual(), options.Real("weight"), MakeLoss(options, setting.size));
+  }
+};
+
+}  // namespace
+
+TermInfo FreeParameterResidual::Info() {
+  TermInfo info;
+  info.name = "free_parameter";
+  info.summary = "distance of the curve from each data point at a parameter that is a variable";
+  info.source = "Zheng, Bo, Liu & Wang, The Visual Computer 28, 2012";
+  info.free_parameters = true;
+  return info;
+}
+
+std::unique_ptr<Term> MakeFreeParameterTerm() { return std::make_unique<FreeParameterTerm>(); }
+
+}  // namespace batten
