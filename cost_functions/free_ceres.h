@@ -81,9 +81,9 @@ struct FreeFunctorAtSite {
 template <typename Functor>
 std::unique_ptr<ceres::CostFunction> MakeFreeCostFunction(const FreeFunctorAtSite<Functor>& site) {
   constexpr int kStride = 8;
-  auto cost = std::make_unique<
-      ceres::DynamicAutoDiffCostFunction<FreeFunctorAtSite<Functor>, kStride>>(
-      new FreeFunctorAtSite<Functor>(site));  // the cost function owns it
+  auto cost =
+      std::make_unique<ceres::DynamicAutoDiffCostFunction<FreeFunctorAtSite<Functor>, kStride>>(
+          new FreeFunctorAtSite<Functor>(site));  // the cost function owns it
   for (int j = 0; j < site.window.num_blocks; ++j) cost->AddParameterBlock(site.dimension);
   cost->AddParameterBlock(1);
   cost->SetNumResiduals(Functor::NumResiduals(site.dimension));

@@ -124,7 +124,8 @@ class FreeFamily final : public BlockFamily {
         if (gradient == nullptr) continue;
         for (int v = 0; v < kernel.num_variables(); ++v) {
           double sum = 0.0;
-          for (int r = 0; r < k; ++r) sum += jacobian[r * kernel.num_variables() + v] * residuals[r];
+          for (int r = 0; r < k; ++r)
+            sum += jacobian[r * kernel.num_variables() + v] * residuals[r];
           (*gradient)[kernel.Offset(block, v)] += 2.0 * weight() * rho[1] * sum;
         }
       }

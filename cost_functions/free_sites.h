@@ -13,8 +13,8 @@ struct FreeSites {
   int dimension = 0;
   int control_point_offset = 0;
   int parameter_offset = 0;
-  Points points;                 ///< Q, scaled as inside, m x d.
-  Eigen::VectorXd weights;       ///< w_i >= 0, the term's weight in them.
+  Points points;            ///< Q, scaled as inside, m x d.
+  Eigen::VectorXd weights;  ///< w_i >= 0, the term's weight in them.
 };
 
 /// Where t is on the curve: its place in the domain and the span there.

@@ -1,10 +1,9 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <thread>
-
-#include <Eigen/Eigenvalues>
 
 #include "problems/fit_problem.h"
 #include "splines/closest_point.h"
@@ -36,16 +35,17 @@ Points AroundTheData(const BsplineBasis& basis, const Points& data, bool circle)
   }
   // A curve runs inside its control polygon: enlarged to the radius 1 in the mean.
   constexpr int kSamples = 256;
-  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(kSamples, basis.domain_begin(),
-                                                       basis.domain_end());
+  const Eigen::VectorXd t =
+      Eigen::VectorXd::LinSpaced(kSamples, basis.domain_begin(), basis.domain_end());
   const double radius = BsplineCurve(basis, unit).Sample(t).rowwise().norm().mean();
   // Too few control points to go around make a point of the curve.
   constexpr double kSmallest = 1e-3;
   if (radius > kSmallest) unit /= radius;
   Points start(n, d);
   for (int j = 0; j < n; ++j) {
-    start.row(j) = mean + unit(j, 0) * (circle ? mid : wide) * axes.eigenvectors().col(d - 1).transpose() +
-                   unit(j, 1) * (circle ? mid : narrow) * axes.eigenvectors().col(d - 2).transpose();
+    start.row(j) =
+        mean + unit(j, 0) * (circle ? mid : wide) * axes.eigenvectors().col(d - 1).transpose() +
+        unit(j, 1) * (circle ? mid : narrow) * axes.eigenvectors().col(d - 2).transpose();
   }
   return start;
 }
@@ -89,7 +89,8 @@ Points CurveFit::StartPoints() const {
 }
 
 void CurveFit::StartParameters(const Points& start) {
-  if (spec_.start_points.size() == 0 && (spec_.start == "data" || spec_.start == "centroid")) return;
+  if (spec_.start_points.size() == 0 && (spec_.start == "data" || spec_.start == "centroid"))
+    return;
   const BsplineCurve curve(*basis_, start);
   const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   ClosestPoint(curve).FindAll(data_.points, threads, &parameters_, nullptr);

@@ -20,6 +20,12 @@ Objective::Objective(const Problem* problem, EvaluationMonitor* monitor, Options
       num_variables_(problem->elimination().num_free(problem->num_variables())),
       view_(options.compile ? CurveView::Make(*problem, monitor) : nullptr) {}
 
+const FreeView* Objective::free_view() const {
+  if (!free_view_is_made_) free_view_ = FreeView::Make(*problem_);
+  free_view_is_made_ = true;
+  return free_view_.get();
+}
+
 Eigen::VectorXd Objective::start() const {
   return problem_->elimination().FreeVariables(problem_->start());
 }

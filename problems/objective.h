@@ -6,6 +6,7 @@
 
 #include "problems/curve_view.h"
 #include "problems/evaluation_monitor.h"
+#include "problems/free_view.h"
 #include "problems/problem.h"
 
 namespace batten {
@@ -51,6 +52,9 @@ class Objective {
   /// The structure geometric methods ask for; null where not all of E is compiled rows.
   CurveView* curve_view() { return view_.get(); }
 
+  /// The structure of problems with free parameters; null for others. Made at the first call.
+  const FreeView* free_view() const;
+
   /// Counts an evaluation at x that a library does itself, from problem().terms(). False: it must
   /// not be done, as after kStop.
   bool Allow(Evaluation kind, const Eigen::VectorXd* x) {
@@ -78,6 +82,8 @@ class Objective {
   Options options_;
   int num_variables_;
   std::unique_ptr<CurveView> view_;
+  mutable bool free_view_is_made_ = false;
+  mutable std::unique_ptr<const FreeView> free_view_;
 };
 
 }  // namespace batten

@@ -10,10 +10,12 @@
 #include "solvers/cg.h"
 #include "solvers/chebyshev_lspia.h"
 #include "solvers/extended_pia.h"
+#include "solvers/free_newton.h"
 #include "solvers/gauss_seidel_pia.h"
 #include "solvers/gim.h"
 #include "solvers/jacobi_pia.h"
 #include "solvers/lbfgs.h"
+#include "solvers/lm_schur.h"
 #include "solvers/local_pia.h"
 #include "solvers/lspia.h"
 #include "solvers/mlspia.h"
@@ -52,6 +54,8 @@ SolverEntry (*const kBuiltInSolvers[])() = {
     &MakeSolverEntry<LbfgsSolver>,
     &MakeSolverEntry<CeresLbfgsSolver>,
     &MakeSolverEntry<CeresLmSolver>,
+    &MakeSolverEntry<LmSchurSolver>,
+    &MakeSolverEntry<FreeNewtonSolver>,
 };
 
 }  // namespace

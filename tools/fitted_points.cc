@@ -10,8 +10,9 @@ bool ReadFittedControlPoints(const std::string& path, Points* points, std::strin
   nlohmann::json json;
   if (!ReadJsonFile(path, &json, error)) return false;
   const auto refuse = [&] {
-    *error = path + ": /spline/control_points: found no list of points of one dimension; allowed: "
-                    "a file that batten fit --out has written";
+    *error = path +
+             ": /spline/control_points: found no list of points of one dimension; allowed: "
+             "a file that batten fit --out has written";
     return false;
   };
   const nlohmann::json::json_pointer place("/spline/control_points");
@@ -20,8 +21,7 @@ bool ReadFittedControlPoints(const std::string& path, Points* points, std::strin
   if (rows.empty() || !rows[0].is_array() || rows[0].empty() || rows[0].size() > kMaxDimension) {
     return refuse();
   }
-  points->resize(static_cast<Eigen::Index>(rows.size()),
-                 static_cast<Eigen::Index>(rows[0].size()));
+  points->resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
   for (Eigen::Index j = 0; j < points->rows(); ++j) {
     const nlohmann::json& row = rows[static_cast<std::size_t>(j)];
     if (!row.is_array() || static_cast<Eigen::Index>(row.size()) != points->cols()) return refuse();

@@ -1,0 +1,39 @@
+#ifndef BATTEN_PROBLEMS_FREE_VIEW_H_
+#define BATTEN_PROBLEMS_FREE_VIEW_H_
+
+#include <memory>
+#include <vector>
+
+#include "problems/problem.h"
+#include "splines/normal_band.h"
+
+namespace batten {
+
+/// A problem E(P, t) = sum_i w_i |C(t_i) - Q_i|^2 + ||A P - B||^2 with the parameters t as
+/// variables, as methods see it that know this structure: one free_parameter term, any number of
+/// terms that are compiled rows, and no constraints but parameters that are held.
+class FreeView {
+ public:
+  /// Null for any other problem.
+  static std::unique_ptr<FreeView> Make(const Problem& problem);
+
+  const FreeSites& sites() const { return *sites_; }
+  int num_points() const { return static_cast<int>(sites_->weights.size()); }  // m
+  int num_control_points() const { return sites_->basis->num_control_points(); }
+  int dimension() const { return sites_->dimension; }
+  /// Whether t_i is given by a constraint.
+  bool is_held(int i) const { return !held_.empty() && held_[static_cast<std::size_t>(i)] != 0; }
+  /// A'A and A'B of the other terms; null where there are none.
+  const NormalBand* other_terms() const { return other_terms_.get(); }
+
+ private:
+  FreeView() = default;
+
+  const FreeSites* sites_ = nullptr;
+  std::vector<char> held_;  // empty: none
+  std::unique_ptr<const NormalBand> other_terms_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_PROBLEMS_FREE_VIEW_H_

@@ -1,0 +1,108 @@
+#ifndef BATTEN_SOLVERS_FOOT_MODEL_H_
+#define BATTEN_SOLVERS_FOOT_MODEL_H_
+
+#include <vector>
+
+#include "problems/free_view.h"
+#include "splines/banded_cholesky.h"
+#include "splines/normal_band.h"
+
+namespace batten {
+
+/// Which quadratic model of E in the control points a FootModel sums up, the parameters eliminated.
+/// With r = C(t) - Q, C' and C'' at t_i, and B the basis functions there, point i adds
+///   w B B' (x) I - a g g',  g = B (x) C' (+ B' (x) r for kNewton)
+/// to the half Hessian and w B (x) r - a (C' . r) g to the half gradient.
+enum class FootModelKind {
+  kPoint,      ///< PDM: a = 0. t stays.
+  kTangent,    ///< TDM, and Gauss-Newton with t eliminated: a = w / ((1 + damping) |C'|^2).
+  kCurvature,  ///< SDM: a = w min(1 / |C'|^2, 1 / (|C'|^2 + r . C'')).
+  kNewton,     ///< Newton with t eliminated: a = w / (|C'|^2 + r . C'' + damping |C'|^2).
+};
+
+/// The reduced model of a free problem in its band (blocks of d x d, bandwidth (p + 1) d), the
+/// border of closed curves included: one pass over the points, sums of each span in their own
+/// place, so that the bits do not depend on the number of threads. Nothing is allocated once sizes
+/// are known.
+class FootModel {
+ public:
+  FootModel(const FreeView& view, int threads);
+
+  /// Sums the model up at all variables x. False where a sum is not finite.
+  bool Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping);
+  double energy() const { return energy_; }
+  FootModelKind kind() const { return kind_; }
+  /// What E is a difference of: sum_i w_i |Q_i|^2, for its rounding.
+  double scale() const { return scale_; }
+  /// Factors the half Hessian + damping * (its diagonal for a = 0). False if that is not positive
+  /// definite to working precision.
+  bool Factor(double damping);
+  /// -(half Hessian)^-1 (half gradient), n d numbers; after Factor.
+  void Solve(Eigen::VectorXd* step) const;
+  /// Half gradient in the control points, t eliminated.
+  const Eigen::VectorXd& half_gradient() const { return half_gradient_; }
+  /// *next = the control points moved by `step` and each parameter by what goes with it, held ones
+  /// and those pressed against an end of the domain excepted. Returns what the model says that E
+  /// falls by. After Sum of the same x.
+  double Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step, Eigen::VectorXd* next);
+
+ private:
+  struct PointState {
+    double along = 0.0;        // C' . r
+    double denominator = 0.0;  // of the parameter's step; 0: it stays
+    double scale = 0.0;        // w |C'|^2 times the damping
+  };
+  template <int P, int D>
+  struct Kernel;
+  template <typename Body>
+  void WithKernel(Body body);
+  void PrepareSpans();
+  void PrepareCurve(const double* control_points);
+  void SortBySpan(const double* parameters);
+  void ShareSpans();
+  template <typename Body>
+  void ForEachShare(Body body);
+  void AssembleBand();
+  std::size_t SpanStride() const {
+    return static_cast<std::size_t>(local_) * (local_ + 1) + static_cast<std::size_t>(order_);
+  }
+  double* SpanSums(int span) { return &span_sums_[static_cast<std::size_t>(span) * SpanStride()]; }
+
+  const FreeView& view_;
+  const FreeSites& sites_;
+  const BsplineBasis& basis_;
+  int threads_;
+  int order_;
+  int dimension_;
+  int local_;  // (p + 1) d
+  FootModelKind kind_ = FootModelKind::kPoint;
+  double damping_ = 0.0;
+  double energy_ = 0.0;
+  double scale_ = 0.0;
+
+  std::vector<double> middles_;       // of the spans
+  std::vector<double> coefficients_;  // per span: (p + 1) powers of t - middle x (p + 1) functions
+  std::vector<double> curve_;         // per span: (p + 1) powers x d
+  std::vector<int> span_of_;          // m, less the first span
+  std::vector<double> places_;        // m: t in the domain
+  std::vector<char> moves_;           // m: 0 where t is held, or at or past an end
+  std::vector<int> order_of_points_;  // by span
+  std::vector<int> span_begins_;      // into it
+  std::vector<int> shares_;           // spans of each thread
+  std::vector<PointState> states_;    // m
+  // Per span: local x local of the half Hessian, upper triangle; local of the half gradient; p + 1
+  // of the diagonal.
+  std::vector<double> span_sums_;
+  std::vector<double> span_energies_;
+  std::vector<double> span_decreases_;
+  NormalBand band_;
+  NormalBand damped_;
+  std::vector<double> diagonal_;  // n: of the half Hessian for a = 0
+  std::vector<double> added_;     // n: to the half Hessian by Factor
+  Eigen::VectorXd half_gradient_;
+  BandedCholesky cholesky_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_SOLVERS_FOOT_MODEL_H_
