@@ -14,24 +14,30 @@ namespace batten {
 class JointDescent : public Stepper {
  public:
   std::string WhyUnsupported(const Objective& objective) const override;
-  std::vector<double> State() const override { return {damping_, growth_}; }
+  std::vector<double> State() const override;
   void Restore(const std::vector<double>& state) override;
 
  protected:
   explicit JointDescent(FootModelKind kind) : kind_(kind) {}
+  /// Called with all variables after each move, which it may go on with. False: no finite number.
+  virtual bool Complete(Eigen::VectorXd* /*all*/) { return true; }
 
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   bool SumHere(FootModelKind kind);
+  double ParameterDamping() const;
+  bool GradientNoLongerFalls();
   /// Leaves the point to be tried in next_; false where the model has no step.
   bool Propose();
 
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
-  double decrease_ = 0.0;       // foretold
-  Eigen::VectorXd all_;         // all variables at x
+  double decrease_ = 0.0;        // foretold
+  double least_gradient_ = 0.0;  // seen where differences of E are noise
+  int waited_ = 0;               // for a smaller one
+  Eigen::VectorXd all_;          // all variables at x
   Eigen::VectorXd next_;
   Eigen::VectorXd step_;
   std::unique_ptr<FootModel> here_;
