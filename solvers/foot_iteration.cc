@@ -95,8 +95,7 @@ Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   Status status = Try(all, step, 1.0, g_of_x, &energy);
   if (!search_) return status;
   const double before = model_->energy();
-  const double noise =
-      64.0 * std::numeric_limits<double>::epsilon() * (before + model_->scale());
+  const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + model_->scale());
   constexpr int kMostHalvings = 20;
   double part = 1.0;
   for (int k = 0; k < kMostHalvings; ++k) {

@@ -28,27 +28,16 @@ std::string JointDescent::WhyUnsupported(const Objective& objective) const {
   return WhyNoFreeView(objective, Info().name);
 }
 
-std::vector<double> JointDescent::State() const {
-  return {damping_, growth_, least_gradient_, static_cast<double>(waited_),
-          here_->kind() == kind_ ? 0.0 : 1.0};
-}
+std::vector<double> JointDescent::State() const { return {damping_, growth_}; }
 
 void JointDescent::Restore(const std::vector<double>& state) {
   damping_ = state[0];
   growth_ = state[1];
-  least_gradient_ = state[2];
-  waited_ = static_cast<int>(state[3]);
 }
 
-/// Where differences of E are rounding, steps are taken as long as they bring the gradient down.
-bool JointDescent::GradientNoLongerFalls() {
-  constexpr int kPatience = 50;
-  const double norm = there_->half_gradient().norm();
-  if (norm < least_gradient_) {
-    least_gradient_ = norm;
-    waited_ = 0;
-  }
-  return ++waited_ > kPatience;
+/// What rounding leaves of a difference of E.
+double JointDescent::Noise(double energy) const {
+  return Objective::EnergyRoundingFloor(energy, 2.0 * std::sqrt(here_->scale()));
 }
 
 bool JointDescent::SumHere(FootModelKind kind) { return here_->Sum(all_, kind, damping_); }
@@ -62,8 +51,6 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   there_ = std::make_unique<FootModel>(view, context()->threads());
   damping_ = kFirstDamping;
   growth_ = 2.0;
-  least_gradient_ = std::numeric_limits<double>::infinity();
-  waited_ = 0;
   all_ = objective()->Expand(*x);
   if (!Complete(&all_)) return Ended(Status::kNonFinite);
   *x = objective()->problem().elimination().FreeVariables(all_);
@@ -97,14 +84,16 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     const double before = here_->energy();
     const bool finite = there_->Sum(next_, kind_, ParameterDamping());
     const double fall = before - there_->energy();
-    // What rounding leaves of a difference of E.
-    const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + here_->scale());
+    const double noise = Noise(before);
+    // Where differences of E are rounding, the gradient tells whether a step was good.
     const bool is_noise = std::abs(fall) <= noise && decrease_ <= noise;
-    if (finite && (fall > 0.0 || is_noise)) {
-      if (is_noise && GradientNoLongerFalls()) break;
-      const double ratio = is_noise ? 1.0 : fall / decrease_;
-      damping_ = std::max(damping_ * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)),
-                          kLeastDamping);
+    const bool is_better =
+        is_noise ? there_->half_gradient().norm() < here_->half_gradient().norm() : fall > 0.0;
+    if (finite && is_better) {
+      if (!is_noise) {
+        const double change = std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * fall / decrease_ - 1.0, 3));
+        damping_ = std::max(damping_ * change, kLeastDamping);
+      }
       growth_ = 2.0;
       all_.swap(next_);
       here_.swap(there_);

@@ -27,17 +27,15 @@ class JointDescent : public Stepper {
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   bool SumHere(FootModelKind kind);
   double ParameterDamping() const;
-  bool GradientNoLongerFalls();
+  double Noise(double energy) const;
   /// Leaves the point to be tried in next_; false where the model has no step.
   bool Propose();
 
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
-  double decrease_ = 0.0;        // foretold
-  double least_gradient_ = 0.0;  // seen where differences of E are noise
-  int waited_ = 0;               // for a smaller one
-  Eigen::VectorXd all_;          // all variables at x
+  double decrease_ = 0.0;  // foretold
+  Eigen::VectorXd all_;    // all variables at x
   Eigen::VectorXd next_;
   Eigen::VectorXd step_;
   std::unique_ptr<FootModel> here_;
