@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "solvers/foot_projection.h"
 #include "solvers/joint_descent.h"
-#include "splines/closest_point.h"
 
 namespace batten {
 namespace {
@@ -48,21 +48,10 @@ Eigen::Index FootIteration::num_mapped(const Eigen::VectorXd& /*x*/) const {
 }
 
 Status FootIteration::Complete(Eigen::VectorXd* x) {
-  if (!objective()->Allow(Evaluation::kProjection, x)) return Status::kStop;
-  const FreeView& view = *objective()->free_view();
-  const FreeSites& sites = view.sites();
   Eigen::VectorXd all = objective()->Expand(*x);
-  if (!all.allFinite()) return Status::kNonFinite;
-  const Points control_points = Eigen::Map<const Points>(
-      all.data() + sites.control_point_offset, view.num_control_points(), view.dimension());
-  const BsplineCurve curve(*sites.basis, control_points);
-  Eigen::VectorXd feet = all.segment(sites.parameter_offset, view.num_points());
-  ClosestPoint(curve).FindAll(sites.points, context()->threads(), &feet, nullptr);
-  for (int i = 0; i < view.num_points(); ++i) {
-    if (!view.is_held(i)) all[sites.parameter_offset + i] = feet[i];
-  }
-  *x = objective()->problem().elimination().FreeVariables(all);
-  return Status::kOk;
+  const Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
+  if (status == Status::kOk) *x = objective()->problem().elimination().FreeVariables(all);
+  return status;
 }
 
 bool FootIteration::MakeStep(const Eigen::VectorXd& all, Eigen::VectorXd* step) {

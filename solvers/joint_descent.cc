@@ -59,6 +59,13 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   return std::nullopt;
 }
 
+Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
+  all_ = all;
+  *x = objective()->problem().elimination().FreeVariables(all_);
+  if (!objective()->Allow(Evaluation::kJacobian, x)) return Status::kStop;
+  return SumHere(kind_) ? Status::kOk : Status::kNonFinite;
+}
+
 bool JointDescent::Propose() {
   if (!here_->Factor(damping_)) return false;
   here_->Solve(&step_);
@@ -95,6 +102,7 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
         damping_ = std::max(damping_ * change, kLeastDamping);
       }
       growth_ = 2.0;
+      last_fall_ = fall;
       all_.swap(next_);
       here_.swap(there_);
       *x = free;

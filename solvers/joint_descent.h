@@ -21,10 +21,15 @@ class JointDescent : public Stepper {
   explicit JointDescent(FootModelKind kind) : kind_(kind) {}
   /// Called with all variables after each move, which it may go on with. False: no finite number.
   virtual bool Complete(Eigen::VectorXd* /*all*/) { return true; }
-
- private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+  FootModel* trial() { return there_.get(); }  ///< Free to be used in Complete.
+  double energy() const { return here_->energy(); }
+  double last_fall() const { return last_fall_; }  ///< Of E by the last step.
+  /// Goes on from other variables, of which *x are the free ones.
+  Status GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x);
+
+ private:
   bool SumHere(FootModelKind kind);
   double ParameterDamping() const;
   double Noise(double energy) const;
@@ -34,6 +39,7 @@ class JointDescent : public Stepper {
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
+  double last_fall_ = 0.0;
   double decrease_ = 0.0;  // foretold
   Eigen::VectorXd all_;    // all variables at x
   Eigen::VectorXd next_;

@@ -11,6 +11,7 @@
 #include "solvers/chebyshev_lspia.h"
 #include "solvers/extended_pia.h"
 #include "solvers/foot_iteration.h"
+#include "solvers/foot_newton.h"
 #include "solvers/gauss_seidel_pia.h"
 #include "solvers/gim.h"
 #include "solvers/jacobi_pia.h"
@@ -56,6 +57,7 @@ SolverEntry (*const kBuiltInSolvers[])() = {
     &MakeSolverEntry<CeresLbfgsSolver>,
     &MakeSolverEntry<CeresLmSolver>,
     &MakeSolverEntry<LmSchurSolver>,
+    &MakeSolverEntry<FootNewtonSolver>,
     &MakeSolverEntry<VarproSolver>,
     &MakeSolverEntry<GiSolver>,
     &MakeSolverEntry<PdmSolver>,
