@@ -54,6 +54,7 @@ std::string AndersonSolver::WhyUnsupported(const Objective& objective) const {
 std::optional<Outcome> AndersonSolver::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
   num_tried_ = num_rejected_ = 0;
+  base_raises_ = false;
   last_image_.resize(0);
   image_differences_.clear();
   move_differences_.clear();
@@ -131,8 +132,13 @@ std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
   if (rises || status != Status::kOk) {
     num_rejected_ += move_differences_.empty() ? 0 : 1;
     candidate_ = image_;
-    status = Evaluate(candidate_, &next_energy_, &next_gradient_);
+    status = TryCandidate(*x, &rises);
     if (status != Status::kOk) return Ended(status);
+    if (rises && !base_raises_) {
+      base_raises_ = true;
+      WarnOfDivergence("a step of " + base_->Info().name +
+                       " raises E, so that E safeguards nothing");
+    }
   }
   x->swap(candidate_);
   energy_ = next_energy_;

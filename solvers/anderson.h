@@ -49,6 +49,7 @@ class AndersonSolver final : public Stepper {
   std::vector<Eigen::VectorXd> image_differences_;  // oldest first
   std::vector<Eigen::VectorXd> move_differences_;
   StallGuard guard_;
+  bool base_raises_ = false;
   int num_tried_ = 0;     // accelerated points
   int num_rejected_ = 0;  // at which E would have risen
 };

@@ -1,5 +1,8 @@
 #include "solvers/spectral_stepper.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace batten {
 
 std::string SpectralStepper::WhyUnsupported(const Objective& objective) const {
@@ -15,6 +18,11 @@ std::optional<Outcome> SpectralStepper::DoStart(Eigen::VectorXd* x) {
   if (spectrum.largest == 0.0) {
     return Outcome{StopReason::kSolved, "no data point touches a control point"};
   }
+  // Momentum rises for about the root of the condition number before it falls.
+  constexpr double kRoots = 20.0;
+  constexpr double kMost = 1e6;
+  const double root = std::sqrt(spectrum.largest / spectrum.smallest);
+  guard_.Reset(std::max(StallGuard::kPatience, static_cast<int>(std::min(kRoots * root, kMost))));
   const double rate = ChooseWeights(spectrum);
   context()->Note("eigenvalues of A'A",
                   NumberText(spectrum.smallest) + " to " + NumberText(spectrum.largest));
