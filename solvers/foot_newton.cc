@@ -1,7 +1,5 @@
 #include "solvers/foot_newton.h"
 
-#include <algorithm>
-
 #include "solvers/foot_projection.h"
 
 namespace batten {
@@ -14,8 +12,8 @@ SolverInfo FootNewtonSolver::ClassInfo() {
   info.needs = {"free parameters"};
   info.supports = {"held parameters", "weights", "affine terms"};
   info.native_rule = NativeRule::kGradient;
-  info.options = {OptionInfo::Integer("longest_wait", 32, 1, 1'000'000,
-                                      "most steps from one search for all feet to the next")};
+  info.options = {OptionInfo::Integer("longest_wait", 8, 0, 1'000'000,
+                                      "steps after which feet are searched for no more")};
   return info;
 }
 
@@ -37,17 +35,17 @@ bool FootNewtonSolver::Complete(Eigen::VectorXd* all) {
 
 std::optional<Outcome> FootNewtonSolver::DoStep(Eigen::VectorXd* x) {
   if (std::optional<Outcome> outcome = JointDescent::DoStep(x)) return outcome;
-  if (++waited_ < wait_) return std::nullopt;
+  if (wait_ > longest_wait_ || ++waited_ < wait_) return std::nullopt;
   waited_ = 0;
   const double before = energy();
   Eigen::VectorXd all = objective()->Expand(*x);
   Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
   if (status == Status::kOk) status = GoTo(all, x);
   if (status != Status::kOk) return Ended(status);
-  // Worth a pass where it brings a good part of what the step did.
-  constexpr double kWorth = 0.1;
-  const bool pays = before - energy() > kWorth * last_fall();
-  wait_ = pays ? 1 : std::min(2 * wait_, longest_wait_);
+  // It brings points that sit at a wrong minimum of their distance to the right one. Later it would
+  // go on bringing a little on noisy data, for ever, as the curve folds up among the points.
+  constexpr double kWorth = 0.01;
+  wait_ = before - energy() > kWorth * before ? 1 : 2 * wait_;
   return std::nullopt;
 }
 

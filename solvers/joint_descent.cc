@@ -102,7 +102,6 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
         damping_ = std::max(damping_ * change, kLeastDamping);
       }
       growth_ = 2.0;
-      last_fall_ = fall;
       all_.swap(next_);
       here_.swap(there_);
       *x = free;

@@ -25,7 +25,6 @@ class JointDescent : public Stepper {
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   FootModel* trial() { return there_.get(); }  ///< Free to be used in Complete.
   double energy() const { return here_->energy(); }
-  double last_fall() const { return last_fall_; }  ///< Of E by the last step.
   /// Goes on from other variables, of which *x are the free ones.
   Status GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x);
 
@@ -39,7 +38,6 @@ class JointDescent : public Stepper {
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
-  double last_fall_ = 0.0;
   double decrease_ = 0.0;  // foretold
   Eigen::VectorXd all_;    // all variables at x
   Eigen::VectorXd next_;
