@@ -24,8 +24,7 @@ Points SampleSpans(const BsplineCurve& curve) {
 }
 
 double LargestDistance(const Points& samples, const BsplineCurve& curve) {
-  Eigen::VectorXd t =
-      Eigen::VectorXd::Constant(samples.rows(), curve.basis().domain_begin());
+  Eigen::VectorXd t = Eigen::VectorXd::Constant(samples.rows(), curve.basis().domain_begin());
   Eigen::VectorXd squared;
   ClosestPoint(curve).FindAll(samples, 1, &t, &squared);
   return std::sqrt(squared.maxCoeff());
@@ -58,8 +57,8 @@ BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x) {
   end.control_points = problem.curve_fit()->ControlPoints(last);
   end.energy = run.energy;
   end.energy_at_foot_points = EnergyAtFootPoints(*problem.curve_fit(), end.control_points);
-  end.polished = ran && (IsSuccess(run.outcome.reason) ||
-                         run.outcome.reason == StopReason::kLineSearchEnded);
+  end.polished =
+      ran && (IsSuccess(run.outcome.reason) || run.outcome.reason == StopReason::kLineSearchEnded);
   return end;
 }
 

@@ -10,10 +10,10 @@ namespace batten {
 
 /// Where a run on a problem with free parameters leads, polished.
 struct BasinEnd {
-  Points control_points;              ///< User units.
-  double energy = 0.0;                ///< At its parameters.
-  double energy_at_foot_points = 0.0; ///< Of the interpolation part: weights, nothing else.
-  bool polished = false;              ///< Newton's method came to its rounding floor.
+  Points control_points;               ///< User units.
+  double energy = 0.0;                 ///< At its parameters.
+  double energy_at_foot_points = 0.0;  ///< Of the interpolation part: weights, nothing else.
+  bool polished = false;               ///< Newton's method came to its rounding floor.
 };
 
 /// Follows a run's end x (all variables, scaled as inside) to the rounding floor by `newton`, so

@@ -65,8 +65,8 @@ CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
   CsvTable table(columns);
   const int count = basins.empty() ? 0 : *std::max_element(basins.begin(), basins.end()) + 1;
   for (int basin = 0; basin < count; ++basin) {
-    const auto first = static_cast<std::size_t>(
-        std::find(basins.begin(), basins.end(), basin) - basins.begin());
+    const auto first =
+        static_cast<std::size_t>(std::find(basins.begin(), basins.end(), basin) - basins.begin());
     std::vector<std::string> row = {problem, std::to_string(basin + 1),
                                     NumberText(ends[first].energy),
                                     NumberText(ends[first].energy_at_foot_points)};
@@ -99,7 +99,9 @@ std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double dist
   const double radius = (spec.start_points.rowwise() - mean).rowwise().norm().mean();
   std::mt19937_64 random(seed * 1'000'003 + static_cast<std::uint64_t>(k));
   // Not std::uniform_real_distribution, whose numbers differ between standard libraries.
-  const auto noise = [&random] { return 2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0; };
+  const auto noise = [&random] {
+    return 2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0;
+  };
   for (double& value : spec.start_points.reshaped()) value += disturbance * radius * noise();
   return MakeFitProblem(std::move(data), std::move(spec), error);
 }
@@ -107,7 +109,8 @@ std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double dist
 bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
                    StartComparison* comparison, std::string* error) {
   if (problem.curve_fit() == nullptr || !problem.curve_fit()->has_free_parameters()) {
-    *error = problem.name() + ": starts are compared where parameters are free; here they are fixed";
+    *error =
+        problem.name() + ": starts are compared where parameters are free; here they are fixed";
     return false;
   }
   std::vector<OneRun> runs;

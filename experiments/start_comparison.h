@@ -24,12 +24,12 @@ struct StartComparisonSpec {
 
 /// Which solver leads where from the same starts, on one problem with free parameters.
 struct StartComparison {
-  /// A row per solver: problem, solver, runs, reached (what was asked), best_found (ends in the best
-  /// basin of all), basins (different ones), median_energy and best_energy (at foot points),
+  /// A row per solver: problem, solver, runs, reached (what was asked), best_found (ends in the
+  /// best basin of all), basins (different ones), median_energy and best_energy (at foot points),
   /// median_iterations, median_seconds.
   CsvTable solvers;
-  /// A row per basin in the order of its energy: problem, basin, energy, energy_at_foot_points, then
-  /// for each solver how many of its runs end there and the median of their seconds.
+  /// A row per basin in the order of its energy: problem, basin, energy, energy_at_foot_points,
+  /// then for each solver how many of its runs end there and the median of their seconds.
   CsvTable basins;
   /// A row per run: problem, solver, start, status, iterations, seconds, energy, basin, polished.
   CsvTable runs;

@@ -59,8 +59,8 @@ void Append(const CsvTable& rows, CsvTable* table) {
 int RunStartComparisons(const std::vector<std::shared_ptr<const Problem>>& problems,
                         StartComparisonSpec spec, const std::string& folder, bool quiet,
                         CommandOutput* output) {
-  if (!folder.empty() && (!CheckName({"out", folder}, &output->error) ||
-                          !CreateDirectories(folder, &output->error))) {
+  if (!folder.empty() &&
+      (!CheckName({"out", folder}, &output->error) || !CreateDirectories(folder, &output->error))) {
     return kBadInput;
   }
   const InterruptibleRun interruptible;

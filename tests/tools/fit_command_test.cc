@@ -69,11 +69,60 @@ TEST(FitCommand, ReachesTheMinimumWithEverySolverOfTheList) {
   const json list = RunBatten({"list", "solvers", "--json"}).Json();
   for (const json& solver : list["solvers"]) {
     std::string name = solver["name"];
+    if (solver["needs"] == json::array({"free parameters"})) continue;
     if (!solver["usual_base"].is_null()) name += ":" + solver["usual_base"].get<std::string>();
     const json fit = Fit({"--problem=rhino_interpolation", "--solver=" + name});
     EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-6) << name;
     EXPECT_EQ(fit["audit"]["verified"], true) << name;
   }
+}
+
+TEST(FitCommand, LowersTheEnergyWithEverySolverOfFreeParameters) {
+  const json list = RunBatten({"list", "solvers", "--json"}).Json();
+  int num_solvers = 0;
+  for (const json& solver : list["solvers"]) {
+    if (solver["needs"] != json::array({"free parameters"})) continue;
+    ++num_solvers;
+    const TemporaryFolder folder;
+    const std::string name = solver["name"];
+    const Ended ended = RunBatten({"fit", "--problem=rhino_free", "--solver=" + name,
+                                   "--max_iterations=20", "--out=" + (folder / "fit.json")});
+    // Slow ones do not reach the target in 20 iterations: a result all the same.
+    EXPECT_LE(ended.status, 1) << ended.err;
+    const json fit = json::parse(ReadFile(folder / "fit.json"), nullptr, false);
+    ASSERT_TRUE(fit.is_object()) << name;
+    // 11,567 is E of the circle at its feet.
+    EXPECT_LT(fit["energy"].get<double>(), 0.5 * 11567.0) << name;
+    EXPECT_LE(fit["energy_at_foot_points"].get<double>(),
+              fit["energy"].get<double>() * (1.0 + 1e-9))
+        << name;
+  }
+  EXPECT_GE(num_solvers, 7);
+}
+
+TEST(FitCommand, TakesFreeParametersAndTheirStarts) {
+  const TemporaryFolder folder;
+  const std::string fit = folder / "fit.json";
+  const std::vector<std::string> common = {"fit",
+                                           kRhino,
+                                           "--closed",
+                                           "--control_points=12",
+                                           "--parameter_kind=free",
+                                           "--solver=foot_newton"};
+  const auto with = [&common](std::vector<std::string> more) {
+    more.insert(more.begin(), common.begin(), common.end());
+    return RunBatten(std::move(more));
+  };
+  for (const char* start : {"circle", "ellipse", "data"}) {
+    EXPECT_EQ(with({std::string("--start=") + start, "--out=" + fit}).status, 0) << start;
+  }
+  // From its own end a run has nothing left to do.
+  const Ended again = with({"--start=" + fit});
+  EXPECT_LE(again.status, 1) << again.err;
+  EXPECT_EQ(with({"--start=" + (folder / "none.json")}).status, 2);
+  EXPECT_EQ(with({"--start=sphere"}).status, 2);
+  EXPECT_EQ(with({"--hold_ends"}).status, 2);
+  EXPECT_EQ(RunBatten({"fit", kRhino, "--control_points=12", "--hold_ends"}).status, 2);
 }
 
 TEST(FitCommand, ReadsPointsFromStandardInput) {
