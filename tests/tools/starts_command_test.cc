@@ -11,8 +11,8 @@ using ::testing::HasSubstr;
 TEST(CompareStarts, CountsBasinsOfEverySolver) {
   const TemporaryFolder folder;
   const Ended ended =
-      RunBatten({"compare", "--problems=dolphin_free", "--solvers=foot_newton,newton",
-                 "--starts=3", "--out=" + (folder / "out"), "--quiet"});
+      RunBatten({"compare", "--problems=dolphin_free", "--solvers=foot_newton,newton", "--starts=3",
+                 "--out=" + (folder / "out"), "--quiet"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("From 3 disturbed circles"));
   const auto solvers = Lines(ReadFile(folder / "out/starts_solvers.csv"));
