@@ -79,7 +79,8 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
 std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
   last_move_.resize(0);
   alternations_ = 0;
-  guard_.Reset();
+  // Cauchy's steps change from one iteration to the next, and the longest move can come late.
+  guard_.Reset(step_rule_ == "cauchy" ? 10 * StallGuard::kPatience : StallGuard::kPatience);
   return ChooseStep(*x);
 }
 

@@ -23,6 +23,11 @@ std::optional<Outcome> SpectralStepper::DoStart(Eigen::VectorXd* x) {
   constexpr double kMost = 1e6;
   const double root = std::sqrt(spectrum.largest / spectrum.smallest);
   guard_.Reset(std::max(StallGuard::kPatience, static_cast<int>(std::min(kRoots * root, kMost))));
+  constexpr double kLong = 100.0;
+  if (root > kLong) {
+    context()->Note("ill-conditioned", "E may rise for some " + NumberText(std::round(root)) +
+                                           " iterations before it falls");
+  }
   const double rate = ChooseWeights(spectrum);
   context()->Note("eigenvalues of A'A",
                   NumberText(spectrum.smallest) + " to " + NumberText(spectrum.largest));
