@@ -61,9 +61,9 @@ TEST(Basins, PolishingABasinAgainFindsTheSameCurve) {
   const CurveFit& fit = *problem->curve_fit();
   const BasinEnd end = Polish(*problem, RunSolver(*problem, "foot_newton").x);
   const Eigen::VectorXd feet = fit.parameters();
-  const BasinEnd again =
-      Polish(*problem, fit.Variables(end.control_points, RunSolver(*problem, "foot_newton").x.tail(
-                                                             feet.size())));
+  const BasinEnd again = Polish(
+      *problem,
+      fit.Variables(end.control_points, RunSolver(*problem, "foot_newton").x.tail(feet.size())));
   EXPECT_EQ(FindBasins(*problem, {end, again}), (std::vector<int>{0, 0}));
 }
 
