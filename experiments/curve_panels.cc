@@ -14,11 +14,11 @@ constexpr double kNodes[] = {0.33998104358485626, 0.86113631159405258};
 constexpr double kWeights[] = {0.65214515486254614, 0.34785484513745386};
 
 constexpr double kLengthTolerance = 1e-9;  // of a panel's length, of which it is halved again
-constexpr double kMostTurning = 0.1;       // of a panel's tangent, in radians
+constexpr double kMostTurning = 0.05;      // of a panel's tangent, in radians
 /// Of the control polygon's length: shorter panels are not halved again, so that cusps, at which a
 /// tangent turns at once, and noise end somewhere.
 constexpr double kShortest = 1e-6;
-constexpr int kPanelsPerSpan = 4;  // to begin with: a span may bend both ways
+constexpr int kPanelsPerSpan = 4;   // to begin with: a span may bend both ways
 constexpr int kMostPanels = 40000;  // to begin with: a million spans are short enough
 
 }  // namespace
@@ -40,7 +40,8 @@ CurvePanels::CurvePanels(const BsplineCurve& curve) : curve_(curve), dimension_(
   for (Eigen::Index j = 1; j < n; ++j) {
     polygon_length_ += (control_points.row(j) - control_points.row(j - 1)).norm();
   }
-  if (basis.periodic()) polygon_length_ += (control_points.row(0) - control_points.row(n - 1)).norm();
+  if (basis.periodic())
+    polygon_length_ += (control_points.row(0) - control_points.row(n - 1)).norm();
   const int most = std::clamp(kMostPanels / basis.num_domain_spans(), 1, kPanelsPerSpan);
   for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
     if (basis.knots()[span] < basis.knots()[span + 1]) {
@@ -91,7 +92,7 @@ bool CurvePanels::IsStraight(const Panel& panel) const {
   const double middle = panel.begin + 0.5 * (panel.end - panel.begin);
   for (const double t : {panel.begin, middle, panel.end}) {
     double* const tangent = tangents[next];
-    if (!Tangent(panel.span, t, tangent)) continue;
+    if (!Tangent(panel, t, tangent)) continue;
     if (last != nullptr) turning += AngleBetween(last, tangent, dimension_);
     last = tangent;
     next = 1 - next;
@@ -112,52 +113,58 @@ void CurvePanels::Evaluate(int span, double t, int k, double* result) const {
   double values[2 * kMaxOrder];
   EvaluateBasisDerivatives(basis.degree(), basis.knots().data(), span, t, k, values);
   const double* const row = values + k * basis.order();
-  std::fill(result, result + dimension_, 0.0);
-  for (int j = 0; j <= basis.degree(); ++j) {
-    const int index = basis.ControlPointIndex(span - basis.degree() + j);
-    for (int c = 0; c < dimension_; ++c) result[c] += row[j] * curve_.control_points()(index, c);
+  // From a control point near by, as basis functions add up to 1: far from the origin rounding
+  // would else be all that small curves have, and C' would be noise to be cut up without end.
+  const double* const origin = ControlPoint(span, 0);
+  for (int c = 0; c < dimension_; ++c) {
+    double sum = 0.0;
+    for (int j = 1; j <= basis.degree(); ++j) {
+      sum += row[j] * (ControlPoint(span, j)[c] - origin[c]);
+    }
+    result[c] = k == 0 ? origin[c] + sum : sum;
   }
 }
 
-double CurvePanels::DerivativeFactor(int span) const {
-  // C' is a mean of the p (P_j - P_(j-1)) / (u_(j+p) - u_j).
+const double* CurvePanels::ControlPoint(int span, int j) const {
   const BsplineBasis& basis = curve_.basis();
-  double factor = 0.0;
-  for (int i = span - basis.degree() + 1; i <= span; ++i) {
-    factor = std::max(factor, 2.0 * basis.degree() /
-                                  (basis.knots()[i + basis.degree()] - basis.knots()[i]));
-  }
-  return factor;
+  const Eigen::Index index = basis.ControlPointIndex(span - basis.degree() + j);
+  return curve_.control_points().data() + index * dimension_;
 }
 
 double CurvePanels::TopSpeed(int span) const {
+  // C' is a mean of the p (P_j - P_(j-1)) / (u_(j+p) - u_j).
   const BsplineBasis& basis = curve_.basis();
+  const int p = basis.degree();
   double top = 0.0;
-  for (int i = span - basis.degree() + 1; i <= span; ++i) {
-    const double step = (curve_.control_points().row(basis.ControlPointIndex(i)) -
-                         curve_.control_points().row(basis.ControlPointIndex(i - 1)))
-                            .norm();
-    top = std::max(top, basis.degree() * step /
-                            (basis.knots()[i + basis.degree()] - basis.knots()[i]));
+  for (int j = 1; j <= p; ++j) {
+    const int i = span - p + j;
+    double squared = 0.0;
+    for (int c = 0; c < dimension_; ++c) {
+      const double step = ControlPoint(span, j)[c] - ControlPoint(span, j - 1)[c];
+      squared += step * step;
+    }
+    top = std::max(top, p * std::sqrt(squared) / (basis.knots()[i + p] - basis.knots()[i]));
   }
   return top;
 }
 
-bool CurvePanels::Tangent(int span, double t, double* result) const {
-  const BsplineBasis& basis = curve_.basis();
+bool CurvePanels::UnitDerivative(int span, double t, double* result) const {
   Evaluate(span, t, 1, result);
-  double speed = 0.0;
-  for (int c = 0; c < dimension_; ++c) speed += result[c] * result[c];
-  speed = std::sqrt(speed);
-  double size = 0.0;
-  for (int j = 0; j <= basis.degree(); ++j) {
-    const int index = basis.ControlPointIndex(span - basis.degree() + j);
-    size = std::max(size, curve_.control_points().row(index).cwiseAbs().maxCoeff());
-  }
-  constexpr double kRoundings = 64.0 * std::numeric_limits<double>::epsilon();
-  if (!(speed > kRoundings * DerivativeFactor(span) * size)) return false;
+  double squared = 0.0;
+  for (int c = 0; c < dimension_; ++c) squared += result[c] * result[c];
+  const double speed = std::sqrt(squared);
+  // C' of a cusp is a sum of p terms of opposite sign, none larger than the top speed times p.
+  constexpr double kRoundings = 16.0 * kMaxDegree * std::numeric_limits<double>::epsilon();
+  if (!(speed > kRoundings * TopSpeed(span))) return false;
   for (int c = 0; c < dimension_; ++c) result[c] /= speed;
   return true;
+}
+
+bool CurvePanels::Tangent(const Panel& panel, double t, double* result) const {
+  constexpr double kBeside = 1e-6;
+  if (UnitDerivative(panel.span, t, result)) return true;
+  const double middle = panel.begin + 0.5 * (panel.end - panel.begin);
+  return UnitDerivative(panel.span, t + kBeside * (middle - t), result);
 }
 
 double CurvePanels::Speed(int span, double t) const {
@@ -173,8 +180,8 @@ double CurvePanels::IntegrateSpeed(int span, double begin, double end) const {
   const double middle = begin + half;
   double sum = 0.0;
   for (int k = 0; k < 2; ++k) {
-    sum += kWeights[k] * (Speed(span, middle - half * kNodes[k]) +
-                          Speed(span, middle + half * kNodes[k]));
+    sum += kWeights[k] *
+           (Speed(span, middle - half * kNodes[k]) + Speed(span, middle + half * kNodes[k]));
   }
   return half * sum;
 }

@@ -7,8 +7,8 @@
 
 namespace batten {
 
-/// A curve cut into panels, parts of one span each that are nearly straight, for integrals along it.
-/// Beside the knots, where C' may jump, each panel has the values of its own span at both ends.
+/// A curve cut into panels, parts of one span each that are nearly straight, for integrals along
+/// it. Beside the knots, where C' may jump, each panel has the values of its own span at both ends.
 class CurvePanels {
  public:
   struct Panel {
@@ -27,14 +27,16 @@ class CurvePanels {
   double LengthUpTo(double t) const;
   /// C^(k)(t), k = 0 or 1, d coordinates, by the polynomials of `span`.
   void Evaluate(int span, double t, int k, double* result) const;
-  /// C'(t) as a unit vector; false where C' is no more than rounding.
-  bool Tangent(int span, double t, double* result) const;
+  /// C'(t) as a unit vector. Where C' is no more than rounding, at a cusp, the one just beside t
+  /// towards the middle of the panel; false if that is no more either.
+  bool Tangent(const Panel& panel, double t, double* result) const;
   /// An upper bound of |C'| on the span.
   double TopSpeed(int span) const;
 
  private:
-  /// Numbers of size `size` at the control points make derivatives up to this times it.
-  double DerivativeFactor(int span) const;
+  /// P_j of the span, j = 0..p.
+  const double* ControlPoint(int span, int j) const;
+  bool UnitDerivative(int span, double t, double* result) const;
   double Speed(int span, double t) const;
   double IntegrateSpeed(int span, double begin, double end) const;
   void AddSpan(int span, int num_panels);

@@ -57,7 +57,7 @@ void MeasureTurning(const BsplineCurve& curve, const CurvePanels& panels, CurveS
   for (const CurvePanels::Panel& panel : panels.panels()) {
     const double middle = panel.begin + 0.5 * (panel.end - panel.begin);
     for (const double t : {panel.begin, middle, panel.end}) {
-      if (panels.Tangent(panel.span, t, tangent)) turning.MoveTo(tangent);
+      if (panels.Tangent(panel, t, tangent)) turning.MoveTo(tangent);
     }
   }
   if (curve.basis().periodic()) turning.Close();
