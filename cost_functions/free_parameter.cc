@@ -25,7 +25,7 @@ TermInfo FreeParameterResidual::Info() {
   TermInfo info;
   info.name = "free_parameter";
   info.summary = "distance of the curve from each data point at a parameter that is a variable";
-  info.source = "Zheng, Bo, Liu & Wang, The Visual Computer 28, 2012";
+  info.source = "Zheng, Bo, Liu & Wang, CAGD 29, 2012, arXiv:1201.0070";
   info.free_parameters = true;
   return info;
 }

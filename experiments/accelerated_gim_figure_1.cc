@@ -65,6 +65,8 @@ CsvTable Native(const ExperimentTables& tables, const std::string& solver,
 Judgement JudgeCounts(const ExperimentTables& tables) {
   const CsvTable gim = Native(tables, kGim);
   const CsvTable lbfgs = Native(tables, kLbfgs);
+  Judgement judgement;
+  if (gim.num_rows() == 0 || lbfgs.num_rows() != gim.num_rows()) return judgement;
   std::size_t nearest = 0;
   for (std::size_t row = 0; row < gim.num_rows(); ++row) {
     const auto distance = [&](std::size_t k) {
@@ -75,7 +77,6 @@ Judgement JudgeCounts(const ExperimentTables& tables) {
   const std::vector<double> counts = gim.Numbers("iterations");
   const double count = counts[nearest];
   const double fast = lbfgs.Number(nearest, "iterations");
-  Judgement judgement;
   judgement.because = "GIM takes " + NumberText(*std::min_element(counts.begin(), counts.end())) +
                       " to " + NumberText(*std::max_element(counts.begin(), counts.end())) +
                       " iterations for offsets from 0 to 0.5; nearest to 134 is " +
@@ -132,7 +133,8 @@ Experiment AcceleratedGimFigure1() {
     const CsvTable gim = Native(tables, kGim);
     const CsvTable lbfgs = Native(tables, kLbfgs);
     const CsvTable strict = Native(tables, kLbfgs, kStrictRule);
-    for (std::size_t row = 0; row < gim.num_rows(); ++row) {
+    const std::size_t rows = std::min({gim.num_rows(), lbfgs.num_rows(), strict.num_rows()});
+    for (std::size_t row = 0; row < rows; ++row) {
       shown.AddRow({gim.Text(row, "offset"), gim.Text(row, "iterations"), gim.Text(row, "rate"),
                     gim.Text(row, "times_cholesky"), lbfgs.Text(row, "iterations"),
                     lbfgs.Text(row, "times_cholesky"), strict.Text(row, "iterations")});

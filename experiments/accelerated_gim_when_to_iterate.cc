@@ -214,7 +214,8 @@ Judgement JudgeBounds(const ExperimentTables& tables) {
       refused += skipped ? 1 : 0;
     } else if (rows.Text(row, "solver") == "ceres_lm") {
       ++iterating;
-      solved += skipped ? 0 : 1;
+      const std::string& status = rows.Text(row, "status");
+      solved += status == "gradient_small" || status == "rounding_floor" || status == "native_stop";
       if (!skipped) most = std::max(most, rows.Number(row, "times_cholesky"));
     }
   }

@@ -69,6 +69,12 @@ double ProblemRuns::cholesky_seconds() {
   return cholesky_seconds_;
 }
 
+/// Over what the run itself started with.
+double ProblemRuns::Gap(const Eigen::VectorXd& x, const RunSpec& spec) const {
+  const double gap = reference_.Gap(x);
+  return spec.start.size() > 0 ? gap / reference_.Gap(spec.start) : gap;
+}
+
 double ProblemRuns::MedianSeconds(const NameSpec& solver, const RunSpec& spec, double first) const {
   // The first run has found caches cold, and has kept a trace.
   std::vector<double> seconds;
@@ -111,14 +117,14 @@ RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTa
                          std::to_string(result.counts.products + result.counts.gradient_calls),
                          NumberText(median), NumberText(median / cholesky),
                          NumberText(result.energy), NumberText(result.gradient_norm),
-                         NumberText(reference_.Gap(result.x)), NumberText(result.observed_rate)});
+                         NumberText(Gap(result.x, spec)), NumberText(result.observed_rate)});
   table->AddRow(row);
   if (traces == nullptr) return result;
   for (std::size_t k = 0; k < result.trace.size(); ++k) {
     const TraceRow& at = result.trace[k];
     traces->AddRow({label_, ToString(spec.mode), solver, std::to_string(at.iteration),
                     NumberText(at.energy), NumberText(at.gradient_norm), NumberText(at.step_norm),
-                    NumberText(reference_.Gap(result.iterates[k].x))});
+                    NumberText(Gap(result.iterates[k].x, spec))});
   }
   return result;
 }

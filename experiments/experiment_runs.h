@@ -52,6 +52,7 @@ class ProblemRuns {
                 CsvTable* traces = nullptr);
 
  private:
+  double Gap(const Eigen::VectorXd& x, const RunSpec& spec) const;
   double MedianSeconds(const NameSpec& solver, const RunSpec& spec, double first) const;
 
   std::string label_;

@@ -77,7 +77,8 @@ std::string PanelPlot(const PlotPanel& panel, int* num_series, std::string* data
   std::string plot;
   for (const PlotSeries& series : panel.series) {
     std::string block;
-    for (std::size_t k = 0; k < series.x.size(); ++k) {
+    // Edited tables can leave one side shorter.
+    for (std::size_t k = 0; k < std::min(series.x.size(), series.y.size()); ++k) {
       if (IsShown(panel, series.x[k], series.y[k])) {
         block += GnuplotNumbers({series.x[k], series.y[k]});
       }

@@ -53,6 +53,8 @@ std::string AndersonSolver::WhyUnsupported(const Objective& objective) const {
 
 std::optional<Outcome> AndersonSolver::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
+  num_tried_ = num_rejected_ = 0;
+  base_raises_ = false;
   last_image_.resize(0);
   image_differences_.clear();
   move_differences_.clear();
@@ -71,7 +73,7 @@ Status AndersonSolver::Evaluate(const Eigen::VectorXd& x, double* energy,
 /// The differences to the step before.
 void AndersonSolver::Remember() {
   if (last_image_.size() == image_.size()) {
-    image_differences_.push_back(image_ - last_image_);
+    image_differences_.push_back(image_.head(move_.size()) - last_image_.head(move_.size()));
     move_differences_.push_back(move_ - last_move_);
     if (static_cast<int>(move_differences_.size()) > window_) {
       image_differences_.erase(image_differences_.begin());
@@ -98,7 +100,8 @@ Eigen::VectorXd AndersonSolver::Accelerated() const {
   Eigen::VectorXd x = image_;
   for (Eigen::Index k = 0; k < count; ++k) {
     if (lengths[k] == 0.0) continue;
-    x -= gamma[k] / lengths[k] * image_differences_[static_cast<std::size_t>(count - 1 - k)];
+    x.head(move_.size()) -=
+        gamma[k] / lengths[k] * image_differences_[static_cast<std::size_t>(count - 1 - k)];
   }
   return x;
 }
@@ -115,23 +118,38 @@ Status AndersonSolver::TryCandidate(const Eigen::VectorXd& x, bool* rises) {
 std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
   Status status = map_->Map(*x, &image_);
   if (status != Status::kOk) return Ended(status);
-  move_ = image_ - *x;
+  const Eigen::Index mapped = map_->num_mapped(*x);
+  move_ = image_.head(mapped) - x->head(mapped);
   Remember();
   bool rises = true;
   if (!move_differences_.empty()) {
     candidate_ = Accelerated();
-    if (candidate_.allFinite()) status = TryCandidate(*x, &rises);
+    ++num_tried_;
+    if (candidate_.allFinite()) status = map_->Complete(&candidate_);
+    if (status == Status::kOk && candidate_.allFinite()) status = TryCandidate(*x, &rises);
     if (status == Status::kStop) return Ended(status);
   }
   if (rises || status != Status::kOk) {
+    num_rejected_ += move_differences_.empty() ? 0 : 1;
     candidate_ = image_;
-    status = Evaluate(candidate_, &next_energy_, &next_gradient_);
+    status = TryCandidate(*x, &rises);
     if (status != Status::kOk) return Ended(status);
+    if (rises && !base_raises_) {
+      base_raises_ = true;
+      WarnOfDivergence("a step of " + base_->Info().name +
+                       " raises E, so that E safeguards nothing");
+    }
   }
   x->swap(candidate_);
   energy_ = next_energy_;
   gradient_.swap(next_gradient_);
   return guard_.Check(move_.norm());
+}
+
+void AndersonSolver::AtEnd() {
+  if (num_tried_ == 0) return;
+  context()->Note("rejected steps", std::to_string(num_rejected_) + " of " +
+                                        std::to_string(num_tried_) + ", E would have risen");
 }
 
 std::vector<double> AndersonSolver::State() const {

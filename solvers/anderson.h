@@ -25,6 +25,7 @@ class AndersonSolver final : public Stepper {
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+  void AtEnd() override;
   /// Value and gradient where E is quadratic (the gradient alone), else the value alone.
   Status Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient);
   void Remember();
@@ -48,6 +49,9 @@ class AndersonSolver final : public Stepper {
   std::vector<Eigen::VectorXd> image_differences_;  // oldest first
   std::vector<Eigen::VectorXd> move_differences_;
   StallGuard guard_;
+  bool base_raises_ = false;
+  int num_tried_ = 0;     // accelerated points
+  int num_rejected_ = 0;  // at which E would have risen
 };
 
 /// The registry's row: takes the base.

@@ -31,10 +31,17 @@ double ChebyshevLspiaSolver::ChooseWeights(const NormalSpectrum& spectrum) {
   const double s = std::sqrt(ln / l1);
   const double asymptotic = (1.0 - s) / (1.0 + s);
   const double power = std::pow(asymptotic, cycle_);
-  return std::pow(2.0 * power / (1.0 + power * power), 1.0 / cycle_);
+  return asymptotic * std::pow(2.0 / (1.0 + power * power), 1.0 / cycle_);
 }
 
-Status ChebyshevLspiaSolver::Begin(const Eigen::VectorXd& /*x*/) { return Status::kOk; }
+Status ChebyshevLspiaSolver::Begin(const Eigen::VectorXd& /*x*/) {
+  constexpr int kLongCycle = 16;
+  if (cycle_ > kLongCycle) {
+    WarnOfDivergence("within a cycle of more than " + std::to_string(kLongCycle) +
+                     " steps rounding grows to the size of what is left");
+  }
+  return Status::kOk;
+}
 
 Status ChebyshevLspiaSolver::Advance(Eigen::VectorXd* x) {
   const Status status = EvaluateResidual(*x);

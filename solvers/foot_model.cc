@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "splines/basis_functions.h"
@@ -89,8 +90,8 @@ struct FootModel::Kernel {
     const bool is_pressed =
         !model.basis_.periodic() && ((t <= model.basis_.domain_begin() && state->along > 0.0) ||
                                      (t >= model.basis_.domain_end() && state->along < 0.0));
-    const bool stays = model.kind_ == FootModelKind::kPoint || model.moves_[i] == 0 ||
-                       is_pressed || !(speed > 0.0);
+    const bool stays = model.kind_ == FootModelKind::kPoint || model.moves_[i] == 0 || is_pressed ||
+                       !(speed > 0.0);
     if (stays) return 0.0;
     double denominator = (1.0 + model.damping_) * speed;
     if (model.kind_ == FootModelKind::kCurvature) {
@@ -170,6 +171,37 @@ struct FootModel::Kernel {
       for (int l = j; l < k; ++l) {
         const double product = w * at.basis[j] * at.basis[l];
         for (int e = 0; e < d; ++e) sums[(j * d + e) * size + l * d + e] += product;
+      }
+    }
+  }
+
+  /// Newton steps on f = |C(t) - Q|^2 of the span's points, inside the span.
+  void ImproveSpan(int span, int steps, double* parameters) const {
+    const int d = dimension();
+    const double low = model.basis_.knots()[model.basis_.first_span() + span];
+    const double high = model.basis_.knots()[model.basis_.first_span() + span + 1];
+    AtPoint at;
+    for (int place = model.span_begins_[span]; place < model.span_begins_[span + 1]; ++place) {
+      const int i = model.order_of_points_[place];
+      if (model.moves_[i] == 0) continue;
+      double t = model.places_[i];
+      double best = std::numeric_limits<double>::infinity();
+      for (int step = 0; step <= steps; ++step) {
+        Evaluate(span, t, &model.sites_.points(i, 0), &at);
+        double f = 0.0, along = 0.0, speed = 0.0, bend = 0.0;
+        for (int e = 0; e < d; ++e) {
+          f += at.r[e] * at.r[e];
+          along += at.r[e] * at.first[e];
+          speed += at.first[e] * at.first[e];
+          bend += at.r[e] * at.second[e];
+        }
+        if (!(f < best)) break;
+        best = f;
+        parameters[i] = t;
+        constexpr double kLeast = 0.1;
+        const double denominator = std::max(speed + bend, kLeast * speed);
+        if (!(denominator > 0.0)) break;
+        t = std::clamp(t - along / denominator, low, high);
       }
     }
   }
@@ -342,9 +374,8 @@ bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping
   const double* control_points = x.data() + sites_.control_point_offset;
   PrepareCurve(control_points);
   SortBySpan(x.data() + sites_.parameter_offset);
-  WithKernel([&](const auto& kernel) {
-    ForEachShare([&kernel](int span) { kernel.SumSpan(span); });
-  });
+  WithKernel(
+      [&](const auto& kernel) { ForEachShare([&kernel](int span) { kernel.SumSpan(span); }); });
   AssembleBand();
   energy_ = 0.0;
   for (const double part : span_energies_) energy_ += part;
@@ -414,6 +445,15 @@ bool FootModel::Factor(double damping) {
 void FootModel::Solve(Eigen::VectorXd* step) const {
   *step = -half_gradient_;
   cholesky_.Solve(step->data(), 1);
+}
+
+void FootModel::ImproveFeet(int steps, Eigen::VectorXd* x) {
+  PrepareCurve(x->data() + sites_.control_point_offset);
+  double* parameters = x->data() + sites_.parameter_offset;
+  SortBySpan(parameters);
+  WithKernel([&](const auto& kernel) {
+    ForEachShare([&](int span) { kernel.ImproveSpan(span, steps, parameters); });
+  });
 }
 
 double FootModel::Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step,

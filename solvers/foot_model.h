@@ -41,6 +41,11 @@ class FootModel {
   void Solve(Eigen::VectorXd* step) const;
   /// Half gradient in the control points, t eliminated.
   const Eigen::VectorXd& half_gradient() const { return half_gradient_; }
+  /// Moves each parameter among all variables `x` nearer to the foot of its point, by at most
+  /// `steps` Newton steps within its span; never away from it. Leaves no sums behind.
+  void ImproveFeet(int steps, Eigen::VectorXd* x);
+  /// Row sums of |half Hessian|, n d of them.
+  std::vector<double> RowSums() const { return band_.AbsoluteRowSums(); }
   /// *next = the control points moved by `step` and each parameter by what goes with it, held ones
   /// and those pressed against an end of the domain excepted. Returns what the model says that E
   /// falls by. After Sum of the same x.

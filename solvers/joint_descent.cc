@@ -21,21 +21,29 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   if (fit == nullptr || !fit->has_free_parameters()) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
-  return name +
-         " takes one free_parameter term without loss and terms that are affine; use lbfgs";
+  return name + " takes one free_parameter term without loss and terms that are affine; use lbfgs";
 }
 
 std::string JointDescent::WhyUnsupported(const Objective& objective) const {
   return WhyNoFreeView(objective, Info().name);
 }
 
+std::vector<double> JointDescent::State() const { return {damping_, growth_}; }
+
 void JointDescent::Restore(const std::vector<double>& state) {
   damping_ = state[0];
   growth_ = state[1];
-  SumHere(kind_);
+}
+
+/// What rounding leaves of a difference of E.
+double JointDescent::Noise(double energy) const {
+  return Objective::EnergyRoundingFloor(energy, 2.0 * std::sqrt(here_->scale()));
 }
 
 bool JointDescent::SumHere(FootModelKind kind) { return here_->Sum(all_, kind, damping_); }
+
+/// For the sums at a point that is not taken yet: as if the step were as good as can be.
+double JointDescent::ParameterDamping() const { return std::max(damping_ / 3.0, kLeastDamping); }
 
 std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   const FreeView& view = *objective()->free_view();
@@ -44,9 +52,18 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   damping_ = kFirstDamping;
   growth_ = 2.0;
   all_ = objective()->Expand(*x);
+  if (!Complete(&all_)) return Ended(Status::kNonFinite);
+  *x = objective()->problem().elimination().FreeVariables(all_);
   if (!objective()->Allow(Evaluation::kJacobian, x)) return Ended(Status::kStop);
   if (!SumHere(kind_)) return Ended(Status::kNonFinite);
   return std::nullopt;
+}
+
+Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
+  all_ = all;
+  *x = objective()->problem().elimination().FreeVariables(all_);
+  if (!objective()->Allow(Evaluation::kJacobian, x)) return Status::kStop;
+  return SumHere(kind_) ? Status::kOk : Status::kNonFinite;
 }
 
 bool JointDescent::Propose() {
@@ -54,7 +71,7 @@ bool JointDescent::Propose() {
   here_->Solve(&step_);
   if (!step_.allFinite()) return false;
   decrease_ = here_->Move(all_, step_, &next_);
-  return next_.allFinite();
+  return next_.allFinite() && Complete(&next_);
 }
 
 std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
@@ -72,25 +89,24 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     const Eigen::VectorXd free = objective()->problem().elimination().FreeVariables(next_);
     if (!objective()->Allow(Evaluation::kJacobian, &free)) return Ended(Status::kStop);
     const double before = here_->energy();
-    const bool finite = there_->Sum(next_, kind_, std::max(damping_ / 3.0, kLeastDamping));
+    const bool finite = there_->Sum(next_, kind_, ParameterDamping());
     const double fall = before - there_->energy();
-    // What rounding leaves of a difference of E.
-    const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + here_->scale());
+    const double noise = Noise(before);
+    // Where differences of E are rounding, the gradient tells whether a step was good.
     const bool is_noise = std::abs(fall) <= noise && decrease_ <= noise;
-    const bool taken =
-        finite && (fall > 0.0 ||
-                   (is_noise && there_->half_gradient().norm() <= here_->half_gradient().norm()));
-    if (taken) {
-      const double ratio = is_noise ? 1.0 : fall / decrease_;
-      damping_ = std::max(
-          damping_ * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)), kLeastDamping);
+    const bool is_better =
+        is_noise ? there_->half_gradient().norm() < here_->half_gradient().norm() : fall > 0.0;
+    if (finite && is_better) {
+      if (!is_noise) {
+        const double change = std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * fall / decrease_ - 1.0, 3));
+        damping_ = std::max(damping_ * change, kLeastDamping);
+      }
       growth_ = 2.0;
       all_.swap(next_);
       here_.swap(there_);
       *x = free;
       return std::nullopt;
     }
-    if (is_noise) break;
     damping_ = std::max(damping_ * growth_, kLeastDamping);
     growth_ *= 2.0;
     if (!SumHere(kind_)) return Ended(Status::kNonFinite);

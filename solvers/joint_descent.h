@@ -14,24 +14,32 @@ namespace batten {
 class JointDescent : public Stepper {
  public:
   std::string WhyUnsupported(const Objective& objective) const override;
-  std::vector<double> State() const override { return {damping_, growth_}; }
+  std::vector<double> State() const override;
   void Restore(const std::vector<double>& state) override;
 
  protected:
   explicit JointDescent(FootModelKind kind) : kind_(kind) {}
-
- private:
+  /// Called with all variables after each move, which it may go on with. False: no finite number.
+  virtual bool Complete(Eigen::VectorXd* /*all*/) { return true; }
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
+  FootModel* trial() { return there_.get(); }  ///< Free to be used in Complete.
+  double energy() const { return here_->energy(); }
+  /// Goes on from other variables, of which *x are the free ones.
+  Status GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x);
+
+ private:
   bool SumHere(FootModelKind kind);
+  double ParameterDamping() const;
+  double Noise(double energy) const;
   /// Leaves the point to be tried in next_; false where the model has no step.
   bool Propose();
 
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
-  double decrease_ = 0.0;       // foretold
-  Eigen::VectorXd all_;         // all variables at x
+  double decrease_ = 0.0;  // foretold
+  Eigen::VectorXd all_;    // all variables at x
   Eigen::VectorXd next_;
   Eigen::VectorXd step_;
   std::unique_ptr<FootModel> here_;

@@ -54,6 +54,11 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
   if (step_rule_ == "max_column") {
     step_.setConstant(relaxation_ * 2.0 / largest);
     context()->Note("step", NumberText(step_[0]));
+    if (relaxation_ == 1.0) {
+      WarnOfDivergence(
+          "an eigenvalue of I - mu N is -1 where the largest one of N is the largest "
+          "column sum; a relaxation below 1 mends it");
+    }
     return std::nullopt;
   }
   if (step_rule_ == "cauchy") {
@@ -74,7 +79,8 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
 std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
   last_move_.resize(0);
   alternations_ = 0;
-  guard_.Reset();
+  // Cauchy's steps change from one iteration to the next, and the longest move can come late.
+  guard_.Reset(step_rule_ == "cauchy" ? 10 * StallGuard::kPatience : StallGuard::kPatience);
   return ChooseStep(*x);
 }
 

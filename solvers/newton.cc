@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "problems/fit_problem.h"
 #include "splines/nearest_solution.h"
 
 namespace batten {
@@ -9,20 +10,30 @@ namespace batten {
 SolverInfo NewtonSolver::ClassInfo() {
   SolverInfo info;
   info.name = "newton";
-  info.summary = "Newton's method with the banded Hessian: one solve, then refinement";
+  info.summary = "Newton's method with the banded Hessian, free parameters eliminated";
   info.source = "Nocedal & Wright, Numerical Optimization, sec. 3.3; de Boor, ch. XIV";
-  info.needs = {"compiled rows"};
-  info.supports = {"linear constraints", "weights", "any rank (nearest to the start)"};
+  info.needs = {"compiled rows, or free parameters"};
+  info.supports = {"linear constraints", "weights", "any rank (nearest to the start)",
+                   "free parameters"};
   info.native_rule = NativeRule::kGradient;
   return info;
 }
 
+SolverInfo FreeNewton::Info() const { return NewtonSolver::ClassInfo(); }
+
 std::string NewtonSolver::WhyUnsupported(const Objective& objective) const {
+  const CurveFit* fit = objective.problem().curve_fit();
+  if (fit != nullptr && fit->has_free_parameters()) return WhyNoFreeView(objective, "newton");
   return WhyNoUnboundedCurveView(objective, "newton");
 }
 
-std::optional<Outcome> NewtonSolver::DoStart(Eigen::VectorXd* /*x*/) {
+std::optional<Outcome> NewtonSolver::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
+  free_.reset();
+  if (objective()->free_view() != nullptr) {
+    free_ = std::make_unique<FreeNewton>();
+    return free_->Start(objective(), context(), x);
+  }
   // Beyond this condition a step has no sure digit, and steps need not come nearer.
   constexpr double kLargestCondition = 0.1 / std::numeric_limits<double>::epsilon();
   singular_ = !factor_.Factor(objective()->curve_view()->normal_band()) ||
@@ -46,6 +57,7 @@ std::optional<Outcome> NewtonSolver::SolveSingular(Eigen::VectorXd* x) {
 }
 
 std::optional<Outcome> NewtonSolver::DoStep(Eigen::VectorXd* x) {
+  if (free_ != nullptr) return free_->Step(x);
   Status status = objective()->curve_view()->NormalResidual(*x, &step_);
   if (status != Status::kOk) return Ended(status);
   if (singular_) return SolveSingular(x);
@@ -57,11 +69,15 @@ std::optional<Outcome> NewtonSolver::DoStep(Eigen::VectorXd* x) {
 }
 
 std::vector<double> NewtonSolver::State() const {
+  if (free_ != nullptr) return free_->State();
   std::vector<double> state;
   guard_.AppendTo(&state);
   return state;
 }
 
-void NewtonSolver::Restore(const std::vector<double>& state) { guard_.Restore(state.data()); }
+void NewtonSolver::Restore(const std::vector<double>& state) {
+  if (free_ != nullptr) return free_->Restore(state);
+  guard_.Restore(state.data());
+}
 
 }  // namespace batten

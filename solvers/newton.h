@@ -1,14 +1,22 @@
 #ifndef BATTEN_SOLVERS_NEWTON_H_
 #define BATTEN_SOLVERS_NEWTON_H_
 
+#include "solvers/joint_descent.h"
 #include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
 #include "splines/banded_cholesky.h"
 
 namespace batten {
 
-/// Newton's method: P += N^-1 A'(Q - A P). The Hessian 2 N of a fit with fixed parameters is
-/// banded, its factor too. docs/solvers/newton.md.
+/// Newton's method on a fit with free parameters, which are eliminated.
+class FreeNewton final : public JointDescent {
+ public:
+  FreeNewton() : JointDescent(FootModelKind::kNewton) {}
+  SolverInfo Info() const override;
+};
+
+/// Newton's method. With fixed parameters P += N^-1 A'(Q - A P): the Hessian 2 N is banded, its
+/// factor too. With free ones FreeNewton. docs/solvers/newton.md.
 class NewtonSolver final : public Stepper {
  public:
   static SolverInfo ClassInfo();
@@ -27,6 +35,7 @@ class NewtonSolver final : public Stepper {
   bool singular_ = false;
   Eigen::VectorXd step_;
   StallGuard guard_;
+  std::unique_ptr<FreeNewton> free_;  // null: parameters are fixed
 };
 
 }  // namespace batten

@@ -10,7 +10,8 @@
 #include "solvers/cg.h"
 #include "solvers/chebyshev_lspia.h"
 #include "solvers/extended_pia.h"
-#include "solvers/free_newton.h"
+#include "solvers/foot_iteration.h"
+#include "solvers/foot_newton.h"
 #include "solvers/gauss_seidel_pia.h"
 #include "solvers/gim.h"
 #include "solvers/jacobi_pia.h"
@@ -25,6 +26,7 @@
 #include "solvers/preconditioned_pia.h"
 #include "solvers/randomised_pia.h"
 #include "solvers/sor_pia.h"
+#include "solvers/varpro.h"
 #include "solvers/weighted_pia.h"
 
 namespace batten {
@@ -55,7 +57,12 @@ SolverEntry (*const kBuiltInSolvers[])() = {
     &MakeSolverEntry<CeresLbfgsSolver>,
     &MakeSolverEntry<CeresLmSolver>,
     &MakeSolverEntry<LmSchurSolver>,
-    &MakeSolverEntry<FreeNewtonSolver>,
+    &MakeSolverEntry<FootNewtonSolver>,
+    &MakeSolverEntry<VarproSolver>,
+    &MakeSolverEntry<GiSolver>,
+    &MakeSolverEntry<PdmSolver>,
+    &MakeSolverEntry<TdmSolver>,
+    &MakeSolverEntry<SdmSolver>,
 };
 
 }  // namespace

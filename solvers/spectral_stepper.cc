@@ -1,5 +1,8 @@
 #include "solvers/spectral_stepper.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace batten {
 
 std::string SpectralStepper::WhyUnsupported(const Objective& objective) const {
@@ -14,6 +17,16 @@ std::optional<Outcome> SpectralStepper::DoStart(Eigen::VectorXd* x) {
   if (status != Status::kOk) return Ended(status);
   if (spectrum.largest == 0.0) {
     return Outcome{StopReason::kSolved, "no data point touches a control point"};
+  }
+  // Momentum rises for about the root of the condition number before it falls.
+  constexpr double kRoots = 20.0;
+  constexpr double kMost = 1e6;
+  const double root = std::sqrt(spectrum.largest / spectrum.smallest);
+  guard_.Reset(std::max(StallGuard::kPatience, static_cast<int>(std::min(kRoots * root, kMost))));
+  constexpr double kLong = 100.0;
+  if (root > kLong) {
+    context()->Note("ill-conditioned", "E may rise for some " + NumberText(std::round(root)) +
+                                           " iterations before it falls");
   }
   const double rate = ChooseWeights(spectrum);
   context()->Note("eigenvalues of A'A",

@@ -16,7 +16,10 @@ class StallGuard {
  public:
   static constexpr int kPatience = 1000;
 
-  void Reset() { *this = StallGuard(); }
+  void Reset(int patience = kPatience) {
+    *this = StallGuard();
+    patience_ = patience;
+  }
   /// Called once per iteration.
   std::optional<Outcome> Check(double measure) {
     if (measure < least_) {
@@ -24,8 +27,8 @@ class StallGuard {
       waited_ = 0;
       return std::nullopt;
     }
-    if (++waited_ < kPatience) return std::nullopt;
-    return Outcome{StopReason::kStalled, "no iteration of the last " + std::to_string(kPatience) +
+    if (++waited_ < patience_) return std::nullopt;
+    return Outcome{StopReason::kStalled, "no iteration of the last " + std::to_string(patience_) +
                                              " came nearer than the best before them"};
   }
   void AppendTo(std::vector<double>* state) const {
@@ -41,6 +44,7 @@ class StallGuard {
  private:
   double least_ = std::numeric_limits<double>::infinity();
   int waited_ = 0;
+  int patience_ = kPatience;
 };
 
 }  // namespace batten

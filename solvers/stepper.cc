@@ -33,8 +33,14 @@ void Stepper::WarnOfDivergence(const std::string& why) {
 
 Outcome Stepper::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
   if (std::optional<Outcome> outcome = Start(objective, context, x)) return *outcome;
+  const Outcome outcome = Loop(x);
+  AtEnd();
+  return outcome;
+}
+
+Outcome Stepper::Loop(Eigen::VectorXd* x) {
   while (true) {
-    const Status status = context->Iterate(*x);
+    const Status status = context_->Iterate(*x);
     if (status != Status::kOk) return Ended(status);
     if (std::optional<Outcome> outcome = Step(x)) return *outcome;
   }

@@ -21,6 +21,8 @@ class Stepper : public Solver {
   virtual void Restore(const std::vector<double>& /*state*/) {}
 
  protected:
+  /// Called once when the run is over: for notes that are known then.
+  virtual void AtEnd() {}
   Objective* objective() const { return objective_; }
   RunContext* context() const { return context_; }
   /// The outcome that goes with an evaluation's status other than kOk.
@@ -31,6 +33,7 @@ class Stepper : public Solver {
 
  private:
   Outcome DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) final;
+  Outcome Loop(Eigen::VectorXd* x);
   virtual std::optional<Outcome> DoStart(Eigen::VectorXd* x) = 0;
   virtual std::optional<Outcome> DoStep(Eigen::VectorXd* x) = 0;
 
@@ -44,6 +47,9 @@ class FixedPoint : public Stepper {
  public:
   /// Writes G(x); x stays.
   virtual Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) = 0;
+  /// How many leading variables the map is one of; the others follow from them by Complete.
+  virtual Eigen::Index num_mapped(const Eigen::VectorXd& x) const { return x.size(); }
+  virtual Status Complete(Eigen::VectorXd* /*x*/) { return Status::kOk; }
 
  protected:
   /// Called with x and G(x) after each plain step; an outcome ends the run (a stall guard).

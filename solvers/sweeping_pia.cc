@@ -7,7 +7,9 @@ std::string SweepingPia::WhyUnsupported(const Objective& objective) const {
 }
 
 std::optional<Outcome> SweepingPia::DoStart(Eigen::VectorXd* /*x*/) {
-  guard_.Reset();
+  // Converges always, but of moves along tiny eigenvalues the longest can come late.
+  constexpr int kPatience = 10 * StallGuard::kPatience;
+  guard_.Reset(kPatience);
   sweep_.emplace(&objective()->curve_view()->normal_band());
   return std::nullopt;
 }

@@ -21,16 +21,14 @@ struct CurveDistance {
   double slope = 0.0;
   double curvature = 0.0;
   double rounding = 0.0;  ///< Differences of squared_distance below this mean nothing.
-  /// Step in t to the foot point on the osculating circle, to second order in its arc length (Hu &
-  /// Wallner, 2005); NaN where the curve has no tangent.
-  double circle_step = 0.0;
-  bool is_foot = false;  ///< FindFoot ended here between low and high: f' is zero, to rounding.
+  bool is_foot = false;   ///< FindFoot ended here between low and high: f' is zero, to rounding.
 };
 
 /// Also at the stretch's end, where the next one may leave at an angle.
 CurveDistance MeasureDistance(const BezierStretch& stretch, const double* point, double t);
 
-/// The lowest point of [low, high], a part of the stretch on which f has one minimum, from `start`
+/// By the second-order step of Hu & Wallner (2005), safeguarded: the lowest point of [low, high], a
+/// part of the stretch on which f has one minimum, from `start`
 /// in it. On other parts some minimum, no higher than at `start`, to rounding.
 CurveDistance FindFoot(const BezierStretch& stretch, const double* point, double low, double start,
                        double high);

@@ -9,6 +9,7 @@
 #include "tools/command.h"
 #include "tools/comparison_session.h"
 #include "tools/run_flags.h"
+#include "tools/starts_run.h"
 
 DEFINE_string(problems, "rhino,squirrel,dolphin,cat",
               "Problems of the catalogue (batten list problems) or problem files, separated by "
@@ -18,6 +19,10 @@ DEFINE_string(solvers, "all",
               "them: every registered one, with its defaults.");
 DEFINE_int32(repetitions, batten::ComparisonSpec().repetitions,
              "Runs of each solver, interleaved; times are medians.");
+DEFINE_int32(
+    starts, 0,
+    "Problems with free parameters: how often each solver finds which minimum from so many "
+    "disturbed circles, instead of the usual table.");
 DEFINE_bool(strict, false, "Exit status 1 if some solver did not reach what was asked.");
 DEFINE_bool(figures, true, "Draw convergence and fitted curves with gnuplot.");
 DEFINE_bool(
@@ -95,6 +100,16 @@ int RunCompare(const std::vector<std::string>& positional, CommandOutput* output
   if (FLAGS_resume && !WasGiven("out")) {
     return Refuse("--resume: found without --out; allowed: with the folder to go on in", output);
   }
+  if (WasGiven("starts")) {
+    std::vector<std::shared_ptr<const Problem>> problems;
+    for (const Contest& contest : contests) problems.push_back(contest.problem);
+    StartComparisonSpec starts;
+    starts.solvers = spec.solvers;
+    starts.run = spec.run;
+    starts.run.keep_trace = false;
+    starts.starts = FLAGS_starts;
+    return RunStartComparisons(problems, std::move(starts), FLAGS_out, FLAGS_quiet, output);
+  }
   for (const Contest& contest : contests) spec.problems.push_back(contest.written);
   ComparisonSession session(std::move(contests), std::move(spec),
                             {FLAGS_out, FLAGS_figures, FLAGS_resume, FLAGS_strict, FLAGS_quiet});
@@ -118,12 +133,14 @@ Command CompareCommand() {
       "--nofigures is given; all but the pictures is written."};
   command.examples = {
       "batten compare --problems=rhino,squirrel,dolphin,cat --solvers=all --out=out/compare",
-      "batten compare --problems=rhino --solvers=lbfgs/memory=5,cg --repetitions=1"};
+      "batten compare --problems=rhino --solvers=lbfgs/memory=5,cg --repetitions=1",
+      "batten compare --problems=rhino_free --solvers=foot_newton,newton,anderson:pdm "
+      "--starts=100"};
   command.flags = {
       TextFlag("problems", "LIST",
                "names of batten list problems, problem files, all; separated by commas"),
       TextFlag("solvers", "LIST", "solvers of batten list solvers, all; separated by commas"),
-      NumberFlag("repetitions", "N", 1.0, 1000.0)};
+      NumberFlag("repetitions", "N", 1.0, 1000.0), NumberFlag("starts", "N", 1.0, 100'000.0)};
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
   command.flags.push_back(
       TextFlag("out", "FOLDER", "a folder",

@@ -64,6 +64,8 @@ TEST(AcceleratedGim, JudgesTheCountsOfFigure1) {
   EXPECT_EQ(Verdict(experiment, Offsets("134", "17")), kInPart);
   EXPECT_EQ(Verdict(experiment, Offsets("50", "10")), kInPart);
   EXPECT_EQ(Verdict(experiment, Offsets("30", "31")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, {{"", CsvTable(RunColumnsBehind({"offset", "rule"}))}}),
+            kUndecided);
 }
 
 /// lspia `ratio` times as slow as lbfgs on all four outlines but the last, there `last` times.
@@ -266,6 +268,26 @@ TEST(AcceleratedGim, JudgesStopRulesInOtherUnits) {
   EXPECT_EQ(Verdict(experiment, units("nan", "52", "55", "gradient_small")), kUndecided);
   EXPECT_EQ(Verdict(experiment, {{"", CsvTable(RunColumnsBehind({"factor", "rule"}))}}),
             kUndecided);
+}
+
+TEST(AcceleratedGim, ShowsWhatIsLeftOfTablesWithRowsTakenOut) {
+  // Rows of one solver alone, in all columns that an experiment asks for.
+  CsvTable table(RunColumnsBehind({"offset", "rule", "points_per_control_point", "parameters",
+                                   "predicted_rate", "measured_rate", "factor", "reason", "setting",
+                                   "largest", "rms", "norm", "distance_to_direct"}));
+  Add({{"mode", "race"}, {"solver", "gim"}, {"rule", kPaperRule}, {"offset", "0"}}, &table);
+  for (const Experiment& experiment : AcceleratedGim().experiments) {
+    ExperimentTables tables = {{"", table}};
+    for (const char* name : {"traces", "curves", "profiles", "rates"}) {
+      tables[name] =
+          CsvTable({"problem", "mode", "solver", "iteration", "x", "y", "energy", "gradient_norm",
+                    "step_norm", "gap", "largest", "rms", "method", "point", "residual",
+                    "iterations", "first_factor", "last_factor", "order"});
+    }
+    for (const SourceClaim& claim : experiment.claims) claim.judge(tables);
+    for (const ExperimentFigure& figure : experiment.figures) figure.panels(tables);
+    if (experiment.shown) experiment.shown(tables);
+  }
 }
 
 TEST(AcceleratedGim, JudgesTheStopRuleThatMisleads) {

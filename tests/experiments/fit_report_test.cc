@@ -142,7 +142,7 @@ TEST(MeasureFit, AuditsFreeParametersWhereverARunEnds) {
     for (const auto& [closed, hold_ends] :
          {std::pair(true, false), std::pair(false, false), std::pair(false, true)}) {
       const auto problem = FreeWave(degree, closed, hold_ends);
-      for (const char* solver : {"free_newton", "lm_schur", "lbfgs"}) {
+      for (const char* solver : {"foot_newton", "newton", "lm_schur", "tdm", "lbfgs"}) {
         for (const int iterations : {0, 3, 200}) {
           RunSpec spec;
           spec.max_iterations = iterations;
@@ -161,7 +161,7 @@ TEST(MeasureFit, AuditsFreeParametersWhereverARunEnds) {
 
 TEST(MeasureFit, ComesToTheFootPointsWhereParametersAreFree) {
   const auto problem = FreeWave(3, true, false);
-  const RunResult run = RunSolver(*problem, "free_newton", {});
+  const RunResult run = RunSolver(*problem, "foot_newton", {});
   const FitReport report = MeasureFit(*problem, run, {});
   EXPECT_EQ(run.outcome.reason, StopReason::kGradientSmall);
   EXPECT_NEAR(report.energy_at_foot_points, run.energy, 1e-8 * run.energy);
@@ -173,7 +173,7 @@ TEST(MeasureFit, ComesToTheFootPointsWhereParametersAreFree) {
 
 TEST(MeasureFit, CatchesALieAboutFreeParameters) {
   const auto problem = FreeWave(3, true, false);
-  RunResult run = RunSolver(*problem, "free_newton", {});
+  RunResult run = RunSolver(*problem, "foot_newton", {});
   run.x[problem->curve_fit()->setting().parameter_offset + 40] += 1e-4;
   EXPECT_FALSE(MeasureFit(*problem, run, {}).verdict.holds);
 }
@@ -251,7 +251,7 @@ TEST(FitJson, HasTheFreeParametersOfTheEnd) {
   const auto problem = FreeWave(3, true, false);
   RunSpec spec;
   spec.keep_iterates = true;
-  const RunResult run = RunSolver(*problem, "free_newton", spec);
+  const RunResult run = RunSolver(*problem, "foot_newton", spec);
   const Json json = Json::parse(FitJson(*problem, run, spec, MeasureFit(*problem, run, spec)));
   EXPECT_EQ(json["parameter_kind"], "free");
   EXPECT_EQ(json["audit"]["verified"], true);

@@ -1,0 +1,36 @@
+#ifndef BATTEN_EXPERIMENTS_BASINS_H_
+#define BATTEN_EXPERIMENTS_BASINS_H_
+
+#include <vector>
+
+#include "experiments/run.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+/// Where a run on a problem with free parameters leads, polished.
+struct BasinEnd {
+  Points control_points;               ///< User units.
+  double energy = 0.0;                 ///< At its parameters.
+  double energy_at_foot_points = 0.0;  ///< Of the interpolation part: weights, nothing else.
+  bool polished = false;               ///< Newton's method came to its rounding floor.
+};
+
+/// Follows a run's end x (all variables, scaled as inside) to the rounding floor by `newton`, so
+/// that ends in one basin become one curve.
+BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x);
+
+/// Sum of w_i times the squared distance of data point i from the curve of these control points.
+double EnergyAtFootPoints(const CurveFit& fit, const Points& control_points);
+
+/// Largest distance of a sampled point of either curve from the other one, 16 samples a span.
+double CurveDistanceBetween(const BsplineCurve& a, const BsplineCurve& b);
+
+/// Basin of each end, 0, 1, ... in the order of their energies at foot points: ends whose curves
+/// are nearer to each other than kSameCurve of the data's size share one.
+std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>& ends);
+inline constexpr double kSameCurve = 1e-6;
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_BASINS_H_

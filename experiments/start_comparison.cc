@@ -1,0 +1,150 @@
+#include "experiments/start_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "experiments/comparison.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+namespace {
+
+struct OneRun {
+  std::size_t solver = 0;
+  int start = 0;
+  RunResult run;
+};
+
+/// The problem's data and spec, to be made a problem again.
+void TakeApart(const Problem& problem, DataSet* data, FitSpec* spec) {
+  const CurveFit& fit = *problem.curve_fit();
+  *data = fit.data();
+  *spec = fit.spec();
+  if (!spec->parameters.has_value()) data->parameters = fit.parameters();
+}
+
+CsvTable SolverTable(const std::string& problem, const StartComparisonSpec& spec,
+                     const std::vector<OneRun>& runs, const std::vector<BasinEnd>& ends,
+                     const std::vector<int>& basins) {
+  CsvTable table({"problem", "solver", "runs", "reached", "best_found", "basins", "median_energy",
+                  "best_energy", "median_iterations", "median_seconds"});
+  for (std::size_t s = 0; s < spec.solvers.size(); ++s) {
+    int count = 0, reached = 0, best = 0;
+    std::vector<int> seen;
+    std::vector<double> energies, iterations, seconds;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      if (runs[k].solver != s) continue;
+      ++count;
+      reached += IsSuccess(runs[k].run.outcome.reason) ? 1 : 0;
+      best += basins[k] == 0 ? 1 : 0;
+      if (std::find(seen.begin(), seen.end(), basins[k]) == seen.end()) seen.push_back(basins[k]);
+      energies.push_back(ends[k].energy_at_foot_points);
+      iterations.push_back(runs[k].run.iterations);
+      seconds.push_back(runs[k].run.seconds);
+    }
+    const double least =
+        energies.empty() ? std::nan("") : *std::min_element(energies.begin(), energies.end());
+    table.AddRow({problem, spec.solvers[s].ToString(), std::to_string(count),
+                  std::to_string(reached), std::to_string(best), std::to_string(seen.size()),
+                  NumberText(Median(energies)), NumberText(least), NumberText(Median(iterations)),
+                  NumberText(Median(seconds))});
+  }
+  return table;
+}
+
+CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
+                    const std::vector<OneRun>& runs, const std::vector<BasinEnd>& ends,
+                    const std::vector<int>& basins) {
+  std::vector<std::string> columns = {"problem", "basin", "energy", "energy_at_foot_points"};
+  for (const NameSpec& solver : spec.solvers) {
+    columns.push_back(solver.ToString());
+    columns.push_back(solver.ToString() + " seconds");
+  }
+  CsvTable table(columns);
+  const int count = basins.empty() ? 0 : *std::max_element(basins.begin(), basins.end()) + 1;
+  for (int basin = 0; basin < count; ++basin) {
+    const auto first =
+        static_cast<std::size_t>(std::find(basins.begin(), basins.end(), basin) - basins.begin());
+    std::vector<std::string> row = {problem, std::to_string(basin + 1),
+                                    NumberText(ends[first].energy),
+                                    NumberText(ends[first].energy_at_foot_points)};
+    for (std::size_t s = 0; s < spec.solvers.size(); ++s) {
+      std::vector<double> seconds;
+      for (std::size_t k = 0; k < runs.size(); ++k) {
+        if (runs[k].solver == s && basins[k] == basin) seconds.push_back(runs[k].run.seconds);
+      }
+      row.push_back(std::to_string(seconds.size()));
+      row.push_back(NumberText(Median(seconds)));
+    }
+    table.AddRow(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double disturbance,
+                                             std::uint64_t seed, int k, std::string* error) {
+  DataSet data;
+  FitSpec spec;
+  TakeApart(problem, &data, &spec);
+  spec.start = "circle";
+  spec.start_points.resize(0, 0);
+  const std::unique_ptr<Problem> round = MakeFitProblem(data, spec, error);
+  if (round == nullptr) return nullptr;
+  spec.start_points = round->curve_fit()->ControlPoints(round->start());
+  const Eigen::RowVectorXd mean = spec.start_points.colwise().mean();
+  const double radius = (spec.start_points.rowwise() - mean).rowwise().norm().mean();
+  std::mt19937_64 random(seed * 1'000'003 + static_cast<std::uint64_t>(k));
+  // Not std::uniform_real_distribution, whose numbers differ between standard libraries.
+  const auto noise = [&random] {
+    return 2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0;
+  };
+  for (double& value : spec.start_points.reshaped()) value += disturbance * radius * noise();
+  return MakeFitProblem(std::move(data), std::move(spec), error);
+}
+
+bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
+                   StartComparison* comparison, std::string* error) {
+  if (problem.curve_fit() == nullptr || !problem.curve_fit()->has_free_parameters()) {
+    *error =
+        problem.name() + ": starts are compared where parameters are free; here they are fixed";
+    return false;
+  }
+  std::vector<OneRun> runs;
+  std::vector<BasinEnd> ends;
+  const int total = spec.starts * static_cast<int>(spec.solvers.size());
+  for (int k = 0; k < spec.starts && !InterruptRequested(); ++k) {
+    const auto from = FromDisturbedCircle(problem, spec.disturbance, spec.run.seed, k, error);
+    if (from == nullptr) return false;
+    for (std::size_t s = 0; s < spec.solvers.size() && !InterruptRequested(); ++s) {
+      if (spec.progress) {
+        spec.progress(static_cast<int>(runs.size()), total, spec.solvers[s].ToString());
+      }
+      OneRun one = {s, k, {}};
+      if (!Run(*from, spec.solvers[s], spec.run, &one.run, error)) return false;
+      if (!one.run.skipped.empty()) continue;
+      ends.push_back(Polish(*from, one.run.x));
+      runs.push_back(std::move(one));
+    }
+  }
+  comparison->interrupted = InterruptRequested();
+  const std::vector<int> basins = FindBasins(problem, ends);
+  comparison->solvers = SolverTable(problem.name(), spec, runs, ends, basins);
+  comparison->basins = BasinTable(problem.name(), spec, runs, ends, basins);
+  comparison->runs = CsvTable({"problem", "solver", "start", "status", "iterations", "seconds",
+                               "energy", "energy_at_foot_points", "basin", "polished"});
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const RunResult& run = runs[k].run;
+    comparison->runs.AddRow({problem.name(), spec.solvers[runs[k].solver].ToString(),
+                             std::to_string(runs[k].start), ToString(run.outcome.reason),
+                             std::to_string(run.iterations), NumberText(run.seconds),
+                             NumberText(run.energy), NumberText(ends[k].energy_at_foot_points),
+                             std::to_string(basins[k] + 1), ends[k].polished ? "1" : "0"});
+  }
+  return true;
+}
+
+}  // namespace batten

@@ -1,0 +1,149 @@
+#include "solvers/foot_iteration.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "solvers/foot_projection.h"
+#include "solvers/joint_descent.h"
+
+namespace batten {
+namespace {
+
+SolverInfo BaseInfo(const std::string& name, const std::string& summary,
+                    const std::string& source) {
+  SolverInfo info;
+  info.name = name;
+  info.summary = summary;
+  info.source = source;
+  info.needs = {"free parameters"};
+  info.supports = {"held parameters", "weights", "affine terms"};
+  info.native_rule = NativeRule::kStep;
+  return info;
+}
+
+std::vector<OptionInfo> ModelOptions(double damping) {
+  return {OptionInfo::Real("damping", damping, 0.0, 1e6,
+                           "added to the model's Hessian, in parts of its diagonal for PDM"),
+          OptionInfo::Word("search", "halving", {"halving", "none"},
+                           "whether a step is halved while E at the new feet rises")};
+}
+
+}  // namespace
+
+std::string FootIteration::WhyUnsupported(const Objective& objective) const {
+  return WhyNoFreeView(objective, Info().name);
+}
+
+std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {
+  guard_.Reset();
+  model_ = std::make_unique<FootModel>(*objective()->free_view(), context()->threads());
+  const Status status = Complete(x);
+  if (status != Status::kOk) return Ended(status);
+  return std::nullopt;
+}
+
+Eigen::Index FootIteration::num_mapped(const Eigen::VectorXd& /*x*/) const {
+  const FreeView& view = *objective()->free_view();
+  return static_cast<Eigen::Index>(view.num_control_points()) * view.dimension();
+}
+
+Status FootIteration::Complete(Eigen::VectorXd* x) {
+  Eigen::VectorXd all = objective()->Expand(*x);
+  const Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
+  if (status == Status::kOk) *x = objective()->problem().elimination().FreeVariables(all);
+  return status;
+}
+
+bool FootIteration::MakeStep(const Eigen::VectorXd& all, Eigen::VectorXd* step) {
+  if (!model_->Sum(all, kind_, 0.0)) return false;
+  // Enough to make a singular system solvable: what the model does not see stays.
+  constexpr double kLeast = 64.0 * std::numeric_limits<double>::epsilon();
+  for (double damping = std::max(damping_, kLeast); damping < 1e8; damping *= 100.0) {
+    if (!model_->Factor(damping)) continue;
+    model_->Solve(step);
+    return step->allFinite();
+  }
+  return false;
+}
+
+Status FootIteration::Try(const Eigen::VectorXd& all, const Eigen::VectorXd& step, double part,
+                          Eigen::VectorXd* g_of_x, double* energy) {
+  Eigen::VectorXd next = all;
+  next.segment(objective()->free_view()->sites().control_point_offset, step.size()) += part * step;
+  *g_of_x = objective()->problem().elimination().FreeVariables(next);
+  const Status status = Complete(g_of_x);
+  return status == Status::kOk && search_ ? objective()->Energy(*g_of_x, energy) : status;
+}
+
+Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
+  if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
+  const Eigen::VectorXd all = objective()->Expand(x);
+  Eigen::VectorXd step;
+  if (!MakeStep(all, &step)) return Status::kNonFinite;
+  double energy = 0.0;
+  Status status = Try(all, step, 1.0, g_of_x, &energy);
+  if (!search_) return status;
+  const double before = model_->energy();
+  const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + model_->scale());
+  constexpr int kMostHalvings = 20;
+  double part = 1.0;
+  for (int k = 0; k < kMostHalvings; ++k) {
+    if (status == Status::kStop || (status == Status::kOk && energy <= before + noise)) break;
+    part *= 0.5;
+    status = Try(all, step, part, g_of_x, &energy);
+  }
+  return status;
+}
+
+std::optional<Outcome> FootIteration::Inspect(const Eigen::VectorXd& x,
+                                              const Eigen::VectorXd& g_of_x) {
+  const Eigen::Index mapped = num_mapped(x);
+  return guard_.Check((g_of_x - x).head(mapped).norm());
+}
+
+std::vector<double> FootIteration::State() const {
+  std::vector<double> state;
+  guard_.AppendTo(&state);
+  return state;
+}
+
+void FootIteration::Restore(const std::vector<double>& state) { guard_.Restore(state.data()); }
+
+SolverInfo GiSolver::ClassInfo() {
+  return BaseInfo("gi", "foot points, then a step of the geometric iteration",
+                  "Maekawa, Matsumoto & Namiki, CAD 39, 2007; Deng & Lin, CAD 47, 2014");
+}
+
+bool GiSolver::MakeStep(const Eigen::VectorXd& all, Eigen::VectorXd* step) {
+  if (!model()->Sum(all, FootModelKind::kPoint, 0.0)) return false;
+  const Eigen::VectorXd& gradient = model()->half_gradient();
+  const std::vector<double> sums = model()->RowSums();
+  step->resize(gradient.size());
+  for (Eigen::Index k = 0; k < step->size(); ++k) {
+    // Control points without data stay.
+    const double sum = sums[static_cast<std::size_t>(k)];
+    (*step)[k] = sum > 0.0 ? -gradient[k] / sum : 0.0;
+  }
+  return true;
+}
+
+SolverInfo PdmSolver::ClassInfo() {
+  return BaseInfo("pdm", "point distance minimisation: foot points, then linear least squares",
+                  "Wang, Pottmann & Liu, ACM TOG 25, 2006; Hoschek, CAGD 5, 1988");
+}
+
+SolverInfo TdmSolver::ClassInfo() {
+  SolverInfo info = BaseInfo("tdm", "tangent distance minimisation: distances from the tangents",
+                             "Blake & Isard, Active Contours, 1998; Wang, Pottmann & Liu, 2006");
+  info.options = ModelOptions(0.01);
+  return info;
+}
+
+SolverInfo SdmSolver::ClassInfo() {
+  SolverInfo info = BaseInfo("sdm", "squared distance minimisation: distances seen with curvature",
+                             "Wang, Pottmann & Liu, ACM TOG 25, 2006");
+  info.options = ModelOptions(1e-4);
+  return info;
+}
+
+}  // namespace batten

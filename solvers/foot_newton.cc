@@ -1,0 +1,65 @@
+#include "solvers/foot_newton.h"
+
+#include "solvers/foot_projection.h"
+
+namespace batten {
+
+SolverInfo FootNewtonSolver::ClassInfo() {
+  SolverInfo info;
+  info.name = "foot_newton";
+  info.summary = "Newton's method, parameters eliminated, points looking for their feet";
+  info.source = "Batten's own: docs/solvers/foot_newton.md";
+  info.needs = {"free parameters"};
+  info.supports = {"held parameters", "weights", "affine terms"};
+  info.native_rule = NativeRule::kGradient;
+  info.options = {OptionInfo::Integer("longest_wait", 8, 0, 1'000'000,
+                                      "steps after which feet are searched for no more")};
+  return info;
+}
+
+std::optional<Outcome> FootNewtonSolver::DoStart(Eigen::VectorXd* x) {
+  wait_ = 1;
+  waited_ = 0;
+  Eigen::VectorXd all = objective()->Expand(*x);
+  const Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
+  if (status != Status::kOk) return Ended(status);
+  *x = objective()->problem().elimination().FreeVariables(all);
+  return JointDescent::DoStart(x);
+}
+
+bool FootNewtonSolver::Complete(Eigen::VectorXd* all) {
+  constexpr int kSteps = 2;
+  trial()->ImproveFeet(kSteps, all);
+  return true;
+}
+
+std::optional<Outcome> FootNewtonSolver::DoStep(Eigen::VectorXd* x) {
+  if (std::optional<Outcome> outcome = JointDescent::DoStep(x)) return outcome;
+  if (wait_ > longest_wait_ || ++waited_ < wait_) return std::nullopt;
+  waited_ = 0;
+  const double before = energy();
+  Eigen::VectorXd all = objective()->Expand(*x);
+  Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
+  if (status == Status::kOk) status = GoTo(all, x);
+  if (status != Status::kOk) return Ended(status);
+  // It brings points that sit at a wrong minimum of their distance to the right one. Later it would
+  // go on bringing a little on noisy data, for ever, as the curve folds up among the points.
+  constexpr double kWorth = 0.01;
+  wait_ = before - energy() > kWorth * before ? 1 : 2 * wait_;
+  return std::nullopt;
+}
+
+std::vector<double> FootNewtonSolver::State() const {
+  std::vector<double> state = JointDescent::State();
+  state.push_back(wait_);
+  state.push_back(waited_);
+  return state;
+}
+
+void FootNewtonSolver::Restore(const std::vector<double>& state) {
+  JointDescent::Restore(state);
+  wait_ = static_cast<int>(state[state.size() - 2]);
+  waited_ = static_cast<int>(state[state.size() - 1]);
+}
+
+}  // namespace batten

@@ -1,0 +1,24 @@
+#include "solvers/foot_projection.h"
+
+#include "splines/closest_point.h"
+
+namespace batten {
+
+Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorXd& free,
+                         Eigen::VectorXd* all) {
+  if (!objective->Allow(Evaluation::kProjection, &free)) return Status::kStop;
+  if (!all->allFinite()) return Status::kNonFinite;
+  const FreeView& view = *objective->free_view();
+  const FreeSites& sites = view.sites();
+  const Points control_points = Eigen::Map<const Points>(
+      all->data() + sites.control_point_offset, view.num_control_points(), view.dimension());
+  const BsplineCurve curve(*sites.basis, control_points);
+  Eigen::VectorXd feet = all->segment(sites.parameter_offset, view.num_points());
+  ClosestPoint(curve).FindAll(sites.points, threads, &feet, nullptr);
+  for (int i = 0; i < view.num_points(); ++i) {
+    if (!view.is_held(i)) (*all)[sites.parameter_offset + i] = feet[i];
+  }
+  return Status::kOk;
+}
+
+}  // namespace batten

@@ -1,0 +1,82 @@
+#include "experiments/basins.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/start_comparison.h"
+#include "tests/experiments/outlines.h"
+
+namespace batten {
+namespace {
+
+/// Closed uniform cubic of n control points on a circle of radius `radius`, the first at `turn`.
+BsplineCurve Round(int n, double radius, double turn) {
+  std::string error;
+  const auto basis =
+      BsplineBasis::Make(3, true, UniformKnots(3, n, EndKnots::kPeriodic, 0.0, 1.0), &error);
+  Points points(n, 2);
+  for (int j = 0; j < n; ++j) {
+    const double a = 2.0 * M_PI * (j + turn) / n;
+    points.row(j) << radius * std::cos(a), radius * std::sin(a);
+  }
+  return BsplineCurve(*basis, points);
+}
+
+TEST(Basins, DistancesOfCurvesAreThoseOfPointSets) {
+  // Turned by a whole control point the curve is the same set of points.
+  EXPECT_LT(CurveDistanceBetween(Round(8, 1.0, 0.0), Round(8, 1.0, 3.0)), 1e-14);
+  // Concentric copies: the curve's radii times the difference of 1 and 1.5. The radius at control
+  // points is (4 + 2 cos(2 pi / n)) / 6, the largest one of the curve.
+  const double largest = (4.0 + 2.0 * std::cos(2.0 * M_PI / 8)) / 6.0;
+  EXPECT_NEAR(CurveDistanceBetween(Round(8, 1.0, 0.0), Round(8, 1.5, 0.0)), 0.5 * largest, 1e-3);
+}
+
+TEST(Basins, EndsOfOneCurveShareABasinWhateverTheirSeam) {
+  const auto problem = LoadCatalogueProblem("rhino_free");
+  const CurveFit& fit = *problem->curve_fit();
+  const RunResult run = RunSolver(*problem, "foot_newton");
+  const BasinEnd end = Polish(*problem, run.x);
+  EXPECT_TRUE(end.polished);
+  EXPECT_LE(end.energy_at_foot_points, end.energy * (1.0 + 1e-12));
+  BasinEnd turned = end;
+  const Eigen::Index n = end.control_points.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    turned.control_points.row(j) = end.control_points.row((j + 5) % n);
+  }
+  BasinEnd moved = end;
+  moved.control_points.col(0).array() += 1e-3 * fit.size();
+  moved.energy_at_foot_points = EnergyAtFootPoints(fit, moved.control_points);
+  turned.energy_at_foot_points = EnergyAtFootPoints(fit, turned.control_points);
+  EXPECT_NEAR(turned.energy_at_foot_points, end.energy_at_foot_points,
+              1e-10 * end.energy_at_foot_points);
+  const std::vector<int> basins = FindBasins(*problem, {moved, end, turned});
+  EXPECT_EQ(basins[1], 0);
+  EXPECT_EQ(basins[2], 0);
+  EXPECT_EQ(basins[0], 1);
+}
+
+TEST(Basins, PolishingABasinAgainFindsTheSameCurve) {
+  const auto problem = LoadCatalogueProblem("dolphin_free");
+  const CurveFit& fit = *problem->curve_fit();
+  const BasinEnd end = Polish(*problem, RunSolver(*problem, "foot_newton").x);
+  const Eigen::VectorXd feet = fit.parameters();
+  const BasinEnd again =
+      Polish(*problem, fit.Variables(end.control_points, RunSolver(*problem, "foot_newton").x.tail(
+                                                             feet.size())));
+  EXPECT_EQ(FindBasins(*problem, {end, again}), (std::vector<int>{0, 0}));
+}
+
+TEST(StartComparison, StartsDependOnSeedAndNumberAlone) {
+  const auto problem = LoadCatalogueProblem("cat_free");
+  std::string error;
+  const auto start = [&](std::uint64_t seed, int k) {
+    return FromDisturbedCircle(*problem, 0.3, seed, k, &error)->start();
+  };
+  EXPECT_EQ(start(1, 0), start(1, 0));
+  EXPECT_NE(start(1, 0), start(1, 1));
+  EXPECT_NE(start(1, 0), start(2, 0));
+}
+
+}  // namespace
+}  // namespace batten
