@@ -7,99 +7,19 @@
 #include <limits>
 #include <sstream>
 
+#include "experiments/audit_curve.h"
+
 namespace batten {
 namespace {
 
-using Real = long double;
+using Real = AuditCurve::Real;
 constexpr Real kUnitRoundoff = 0x1p-53L;  // of double: half the distance from 1 to its neighbour
 constexpr int kMostCoordinates = 16;
 
-/// Notation of de Boor 1972: k = order, knots u, control points d_j; d_j^(r) are the points of
-/// level r. Curve point and basis values come from one table of the recursion's ratios.
-class DeBoor {
- public:
-  explicit DeBoor(const AuditedFit& fit)
-      : fit_(fit),
-        p_(fit.degree),
-        n_(static_cast<int>(fit.control_points.size()) / fit.dimension),
-        last_(fit.periodic ? n_ + p_ - 1 : n_ - 1),
-        ratios_((p_ + 1) * (p_ + 1)),
-        work_(p_ + 1) {
-    CHECK_GE(p_, 1);
-    CHECK_EQ(fit.knots.size(), static_cast<std::size_t>(last_ + p_ + 2));
-  }
-
-  int num_control_points() const { return n_; }
-
-  /// Moves to parameter t: finds the span and fills the table of ratios.
-  void MoveTo(double parameter) {
-    const Real t = Wrapped(parameter);
-    const double* u = fit_.knots.data();
-    // The last span with u_s <= t that is not empty: the domain's end belongs to the span before.
-    const double* end = std::upper_bound(u + p_, u + last_ + 1, t,
-                                         [](Real value, double knot) { return value < knot; });
-    span_ = static_cast<int>(end - u) - 1;
-    while (span_ > p_ && u[span_] >= u[span_ + 1]) --span_;
-    for (int r = 1; r <= p_; ++r) {
-      for (int j = p_; j >= r; --j) {
-        const int i = span_ - p_ + j;
-        const Real low = u[i];
-        ratios_[r * (p_ + 1) + j] = (t - low) / (static_cast<Real>(u[i + p_ - r + 1]) - low);
-      }
-    }
-  }
-
-  /// Control point of local function j = 0..p.
-  int ControlPoint(int j) const { return (span_ - p_ + j) % n_; }
-
-  /// Coordinate c of C(t): d_j^(r) = (1 - a) d_(j-1)^(r-1) + a d_j^(r-1), up to d_p^(p).
-  Real Coordinate(int c) {
-    for (int j = 0; j <= p_; ++j)
-      work_[j] = fit_.control_points[ControlPoint(j) * fit_.dimension + c];
-    for (int r = 1; r <= p_; ++r) {
-      for (int j = p_; j >= r; --j) {
-        const Real a = ratios_[r * (p_ + 1) + j];
-        work_[j] = (1 - a) * work_[j - 1] + a * work_[j];
-      }
-    }
-    return work_[p_];
-  }
-
-  /// The same recursion transposed: how much each of the p + 1 control points is worth in C(t).
-  const std::vector<Real>& BasisValues() {
-    std::fill(work_.begin(), work_.end(), 0);
-    work_[p_] = 1;
-    for (int r = p_; r >= 1; --r) {
-      for (int j = r; j <= p_; ++j) {
-        const Real a = ratios_[r * (p_ + 1) + j];
-        work_[j - 1] += (1 - a) * work_[j];
-        work_[j] *= a;
-      }
-    }
-    return work_;
-  }
-
- private:
-  Real Wrapped(double t) const {
-    const Real begin = fit_.knots[p_];
-    const Real end = fit_.knots[last_ + 1];
-    if (!fit_.periodic) return std::clamp(static_cast<Real>(t), begin, end);
-    const Real turns = std::floor((t - begin) / (end - begin));
-    return std::clamp(t - turns * (end - begin), begin, end);
-  }
-
-  const AuditedFit& fit_;
-  int p_;
-  int n_;
-  int last_;  // last span; u_p..u_(last + 1) is the domain
-  int span_ = 0;
-  std::vector<Real> ratios_;
-  std::vector<Real> work_;
-};
-
-/// |v|, without overflow where single squares do not overflow in long double.
-double Norm(const std::vector<Real>& v) {
-  Real sum = 0;
+/// Root of |v|^2 + more_squares, without overflow where single squares do not overflow in long
+/// double.
+double Norm(const std::vector<Real>& v, Real more_squares) {
+  Real sum = more_squares;
   for (const Real value : v) sum += value * value;
   return static_cast<double>(std::sqrt(sum));
 }
@@ -113,6 +33,10 @@ struct Sums {
   std::vector<Real> gradient;   // n x d
   std::vector<Real> rounding;   // its worst case, n x d
   std::vector<int> num_points;  // that each control point moves, n
+  // The same of free parameters, which no two points share: their squares are summed up at once.
+  Real squared_slope = 0;           // of those that move
+  Real squared_pull = 0;            // of those past an end that E draws back into the domain
+  Real squared_slope_rounding = 0;  // of both
   // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
   // which points near the user's origin may be far out.
   Real extent[kMostCoordinates] = {};
@@ -131,27 +55,44 @@ void MeasureExtent(const AuditedFit& fit, Sums* sums) {
   }
 }
 
-void AddPoint(const AuditedFit& fit, int i, DeBoor* curve, Sums* sums) {
+/// One data point where the curve now is.
+struct Residual {
+  Real weight = 1;
+  Real value[kMostCoordinates];  // C(t) - Q
+  Real data[kMostCoordinates];   // size of the data, the centre of the run's coordinates included
+  Real size[kMostCoordinates];   // what one rounding of all numbers in `value` is relative to
+};
+
+Residual MeasureResidual(const AuditedFit& fit, int i, const Sums& sums, AuditCurve* curve) {
   const int d = fit.dimension;
   const std::size_t first = static_cast<std::size_t>(i) * d;
-  const Real weight = fit.weights.empty() ? 1.0 : fit.weights[i];
-  curve->MoveTo(fit.parameters[i]);
-  Real residual[kMostCoordinates];
-  for (int c = 0; c < d; ++c) residual[c] = curve->Coordinate(c) - fit.points[first + c];
+  Residual residual;
+  if (!fit.weights.empty()) residual.weight = fit.weights[i];
+  for (int c = 0; c < d; ++c) residual.value[c] = curve->Coordinate(c) - fit.points[first + c];
+  const std::vector<Real>& basis = curve->BasisValues();
+  for (int c = 0; c < d; ++c) {
+    residual.data[c] = std::abs(static_cast<Real>(fit.points[first + c])) + sums.extent[c];
+    residual.size[c] = residual.data[c];
+    for (int j = 0; j <= fit.degree; ++j) {
+      residual.size[c] += basis[j] * std::abs(fit.control_points[curve->ControlPoint(j) * d + c]);
+    }
+  }
+  return residual;
+}
+
+void AddPoint(const AuditedFit& fit, const Residual& residual, AuditCurve* curve, Sums* sums) {
+  const int d = fit.dimension;
+  const Real weight = residual.weight;
   const std::vector<Real>& basis = curve->BasisValues();
   for (int j = 0; j <= fit.degree; ++j) ++sums->num_points[curve->ControlPoint(j)];
   Real squared = 0;
   for (int c = 0; c < d; ++c) {
-    squared += residual[c] * residual[c];
-    Real size = std::abs(static_cast<Real>(fit.points[first + c])) + sums->extent[c];
-    for (int j = 0; j <= fit.degree; ++j) {
-      size += basis[j] * std::abs(fit.control_points[curve->ControlPoint(j) * d + c]);
-    }
-    const Real rounding = kUnitRoundoff * size;
+    squared += residual.value[c] * residual.value[c];
+    const Real rounding = kUnitRoundoff * residual.size[c];
     sums->squared_rounding += weight * rounding * rounding;
     for (int j = 0; j <= fit.degree; ++j) {
       const int entry = curve->ControlPoint(j) * d + c;
-      sums->gradient[entry] += 2 * weight * basis[j] * residual[c];
+      sums->gradient[entry] += 2 * weight * basis[j] * residual.value[c];
       sums->rounding[entry] += 2 * weight * basis[j] * rounding;
     }
   }
@@ -159,6 +100,43 @@ void AddPoint(const AuditedFit& fit, int i, DeBoor* curve, Sums* sums) {
   sums->squared_distance += squared;
   // Written so that NaN is not lost.
   if (!(squared <= sums->largest)) sums->largest = squared;
+}
+
+/// dE/d(length t_i) = 2 w C'(t_i) . r_i / length. Run and audit have the same t, so that roundings
+/// are those of r and C'; in the latter W_j (P_j - P_(j-1)) may be a small difference of large
+/// numbers, in coordinates from a centre no farther from the user's origin than data + extent.
+void AddParameter(const AuditedFit& fit, int i, const Residual& residual, AuditCurve* curve,
+                  Sums* sums) {
+  const ParameterState state = fit.parameter_states[i];
+  if (state == ParameterState::kHeld) return;
+  const int d = fit.dimension;
+  const std::vector<Real>& weights = curve->DerivativeWeights();
+  const Real factor = 2 * residual.weight / fit.length;
+  Real slope = 0;
+  Real rounding = 0;
+  for (int c = 0; c < d; ++c) {
+    Real derivative = 0;
+    Real derivative_size = 0;
+    for (int j = 1; j <= fit.degree; ++j) {
+      const Real before = fit.control_points[curve->ControlPoint(j - 1) * d + c];
+      const Real after = fit.control_points[curve->ControlPoint(j) * d + c];
+      derivative += weights[j] * (after - before);
+      derivative_size += weights[j] * (std::abs(before) + std::abs(after) + 2 * residual.data[c]);
+    }
+    slope += factor * derivative * residual.value[c];
+    rounding +=
+        factor * kUnitRoundoff *
+        (std::abs(derivative) * residual.size[c] + std::abs(residual.value[c]) * derivative_size);
+  }
+  sums->squared_slope_rounding += rounding * rounding;
+  if (state == ParameterState::kMoves) {
+    sums->squared_slope += slope * slope;
+    return;
+  }
+  const double t = fit.parameters[i];
+  const bool at_begin = t <= curve->domain_begin();
+  CHECK(!fit.periodic && (at_begin || t >= curve->domain_end())) << "t is inside the domain";
+  if (at_begin ? slope < 0 : slope > 0) sums->squared_pull += slope * slope;
 }
 
 std::string Number(double value) {
@@ -180,20 +158,28 @@ AuditReport Audit(const AuditedFit& fit) {
   const int m = static_cast<int>(fit.parameters.size());
   CHECK_EQ(fit.points.size(), static_cast<std::size_t>(m) * fit.dimension);
   CHECK(fit.weights.empty() || fit.weights.size() == fit.parameters.size());
-  DeBoor curve(fit);
+  const bool is_free = !fit.parameter_states.empty();
+  CHECK(!is_free || fit.parameter_states.size() == fit.parameters.size());
+  AuditCurve curve(fit);
   Sums sums;
   sums.gradient.assign(fit.control_points.size(), 0);
   sums.rounding.assign(fit.control_points.size(), 0);
   sums.num_points.assign(curve.num_control_points(), 0);
   MeasureExtent(fit, &sums);
-  for (int i = 0; i < m; ++i) AddPoint(fit, i, &curve, &sums);
+  for (int i = 0; i < m; ++i) {
+    curve.MoveTo(fit.parameters[i]);
+    const Residual residual = MeasureResidual(fit, i, sums, &curve);
+    AddPoint(fit, residual, &curve, &sums);
+    if (is_free) AddParameter(fit, i, residual, &curve, &sums);
+  }
 
   AuditReport report;
   report.num_points = m;
   report.most_summands = *std::max_element(sums.num_points.begin(), sums.num_points.end());
   report.energy = static_cast<double>(sums.energy);
-  report.gradient_norm = Norm(sums.gradient);
-  report.gradient_floor = Norm(sums.rounding);
+  report.gradient_norm = Norm(sums.gradient, sums.squared_slope);
+  report.pull_norm = static_cast<double>(std::sqrt(sums.squared_pull));
+  report.gradient_floor = Norm(sums.rounding, sums.squared_slope_rounding);
   // E(r + delta) - E(r) = 2 r'W delta + delta'W delta <= 2 |r| |delta| + |delta|^2 in W's norm.
   const Real delta = std::sqrt(sums.squared_rounding);
   report.energy_floor = static_cast<double>(2 * std::sqrt(sums.energy) * delta + delta * delta);
@@ -206,7 +192,8 @@ AuditReport Audit(const AuditedFit& fit) {
 // A term B_j(t) P_j costs the run at most kRoundings: 4 for each of the p <= 9 levels of the basis
 // recursion (a difference of knots, a quotient, a product, a sum), and at most 12 more for
 // centring, the products and the p + 2 sums of C(t) - Q, and the weight. All of them in the worst
-// direction. Sums over points add a rounding for each.
+// direction. Sums over points add a rounding for each. The derivative by a free parameter has one
+// level of the recursion less, and instead of it a quotient, a product and a difference.
 Verdict Verify(const Claim& claim, const AuditReport& report) {
   constexpr double kRoundings = 4 * 9 + 12;
   const bool nothing_finite = !std::isfinite(claim.energy) && !std::isfinite(report.energy);
@@ -238,6 +225,12 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
     return {false, "claims a minimum with |g| at most " + Number(claim.gradient_target) +
                        ", but the audit finds " + Number(report.gradient_norm) +
                        " (allowed with rounding: " + Number(target) + ")"};
+  }
+  if (!(std::hypot(report.gradient_norm, report.pull_norm) <= target)) {
+    return {false,
+            "claims a minimum, but E falls where parameters that are past an end of the "
+            "curve move back into it: |g| of these is " +
+                Number(report.pull_norm) + " (allowed: " + Number(target) + ")"};
   }
   if (report.energy - energy_allowed > claim.start_energy) {
     return {false, "claims a minimum, but its energy " + Number(report.energy) +

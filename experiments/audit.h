@@ -7,6 +7,13 @@
 
 namespace batten {
 
+/// What a free parameter is to the gradient.
+enum class ParameterState : char {
+  kMoves,
+  kHeld,    ///< By a constraint: it is no variable.
+  kPastEnd  ///< Of an open curve: the run has it past an end, where E does not change with it.
+};
+
 /// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code
 /// with the folder splines/.
 struct AuditedFit {
@@ -18,14 +25,22 @@ struct AuditedFit {
   std::vector<double> points;          // m x d
   std::vector<double> parameters;      // m
   std::vector<double> weights;         // m, or empty: all 1
+  /// Of free parameters, m; empty: they are fixed. Those past an end are given as that end.
+  std::vector<ParameterState> parameter_states;
+  /// Of free ones: |g| is the gradient in (P, length * t), all of one unit.
+  double length = 1.0;
 };
 
 /// E, g and distances of a fit with the interpolation term, recomputed by de Boor's recursion in
 /// long double, point by point.
 struct AuditReport {
-  double energy = 0.0;         // sum of w |C(t) - Q|^2
-  double gradient_norm = 0.0;  // of E with respect to the control points
-  double energy_floor = 0.0;   // what rounding control points and data to double is worth in E,
+  double energy = 0.0;  // sum of w |C(t) - Q|^2
+  /// Of E with respect to the control points and, of free parameters, length * t of those that
+  /// move.
+  double gradient_norm = 0.0;
+  /// Beside it: of parameters past an end that E draws back into the domain. 0 at a minimum.
+  double pull_norm = 0.0;
+  double energy_floor = 0.0;  // what rounding control points and data to double is worth in E,
   double gradient_floor =
       0.0;                    // and in |g|: one rounding of each number, all in the worst direction
   double rms_distance = 0.0;  // over the points, at their parameters, not weighted

@@ -30,11 +30,11 @@ std::string DataName(int step) {
   return step == 1 ? "data" : "data (1 in " + std::to_string(step) + ")";
 }
 
-std::string DataBlock(const CurveFit& fit, int step) {
+std::string DataBlock(const CurveFit& fit, const Eigen::VectorXd& parameters, int step) {
   std::string text = "# " + DataName(step) + "\n" + ColumnNames(fit.dimension());
   const Points& points = fit.data().points;
   for (Eigen::Index i = 0; i < points.rows(); i += step) {
-    text += Line(fit.parameters()[i], points.row(i).data(), fit.dimension());
+    text += Line(parameters[i], points.row(i).data(), fit.dimension());
   }
   return text;
 }
@@ -189,7 +189,7 @@ FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::
   const int m = static_cast<int>(fit->data().points.rows());
   const int n = fit->basis().num_control_points();
   const int step = (m + kMostPoints - 1) / kMostPoints;
-  const std::string data = DataBlock(*fit, step) + "\n\n" +
+  const std::string data = DataBlock(*fit, fit->Parameters(run.x), step) + "\n\n" +
                            PolygonBlock(fit->basis(), control_points) + "\n\n" +
                            CurveBlock(fit->Curve(run.x));
   const FigureCanvas canvas = LayOutPanels(Panels(*fit, control_points), fit->dimension() > 1);

@@ -1,50 +1,69 @@
 #include "experiments/fit_report.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "cost_functions/options.h"
-#include "experiments/build_info.h"
+#include "problems/free_view.h"
 #include "splines/closest_point.h"
 
 namespace batten {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// What the interpolation terms of `problem` together weigh; NaN if some term is another one, has a
-/// loss, or the control points are constrained.
-double InterpolationWeight(const Problem& problem) {
+/// What the terms of `problem` together weigh; NaN if the audit does not apply: it knows distances
+/// from the data without loss, where no constraint holds more than parameters.
+double DistanceWeight(const Problem& problem) {
+  const CurveFit* fit = problem.curve_fit();
+  const bool is_free = fit != nullptr && fit->has_free_parameters();
+  bool plain = fit != nullptr;
   double weight = 0.0;
-  bool plain = problem.curve_fit() != nullptr && problem.elimination().trivial();
   for (const Problem::TermInstance& term : problem.terms()) {
     NameSpec name;
     std::string error;
-    plain = plain && ParseNameSpec(term.name, &name, &error) && name.name == "interpolation" &&
+    plain = plain && ParseNameSpec(term.name, &name, &error) &&
+            name.name == (is_free ? "free_parameter" : "interpolation") &&
             term.family->loss() == nullptr;
     weight += term.family->weight();
   }
+  plain = plain && (is_free ? FreeView::Make(problem) != nullptr : problem.elimination().trivial());
   return plain ? weight : std::numeric_limits<double>::quiet_NaN();
 }
 
-AuditedFit PlainNumbers(const CurveFit& fit, const Points& control_points, double term_weight) {
+std::vector<ParameterState> ParameterStates(const Problem& problem, const Eigen::VectorXd& x) {
+  const CurveFit& fit = *problem.curve_fit();
+  if (!fit.has_free_parameters()) return {};
+  const std::unique_ptr<FreeView> view = FreeView::Make(problem);
+  std::vector<ParameterState> states(static_cast<std::size_t>(fit.parameters().size()));
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const int place = static_cast<int>(i);
+    const double t = x[fit.setting().parameter_offset + place];
+    if (view->is_held(place)) {
+      states[i] = ParameterState::kHeld;
+    } else {
+      states[i] =
+          PlaceOnCurve(fit.basis(), t).moves ? ParameterState::kMoves : ParameterState::kPastEnd;
+    }
+  }
+  return states;
+}
+
+AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double term_weight) {
   const auto copy = [](const auto& matrix) {
     return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
   };
+  const CurveFit& fit = *problem.curve_fit();
   AuditedFit plain;
   plain.degree = fit.basis().degree();
   plain.periodic = fit.basis().periodic();
   plain.dimension = fit.dimension();
   plain.knots = fit.basis().knots();
-  plain.control_points = copy(control_points);
+  plain.control_points = copy(fit.ControlPoints(x));
   plain.points = copy(fit.data().points);
-  plain.parameters = copy(fit.parameters());
+  plain.parameters = copy(fit.Parameters(x));
+  plain.parameter_states = ParameterStates(problem, x);
+  plain.length = problem.units().length;
   if (fit.data().weights.has_value()) plain.weights = copy(*fit.data().weights);
   if (term_weight != 1.0) {
     plain.weights.resize(plain.parameters.size(), 1.0);
@@ -53,125 +72,41 @@ AuditedFit PlainNumbers(const CurveFit& fit, const Points& control_points, doubl
   return plain;
 }
 
-void MeasureDistances(const CurveFit& fit, const Points& control_points, double term_weight,
+/// Distances at the parameters t.
+void MeasureDistances(const CurveFit& fit, const BsplineCurve& curve, const Eigen::VectorXd& t,
                       FitReport* report) {
-  const BsplineCurve curve(fit.basis(), control_points);
-  const ClosestPoint closest(curve);
-  const Points at_parameters = curve.Sample(fit.parameters());
   const Points& points = fit.data().points;
-  Eigen::VectorXd feet = fit.parameters();
+  const Eigen::VectorXd distances = (curve.Sample(t) - points).rowwise().norm();
+  report->rms = std::sqrt(distances.squaredNorm() / static_cast<double>(points.rows()));
+  report->max = distances.maxCoeff();
+}
+
+/// Distances at the foot points, which replace the parameters they are searched from.
+void MeasureFootPoints(const CurveFit& fit, const BsplineCurve& curve, double term_weight,
+                       Eigen::VectorXd* feet, FitReport* report) {
+  const Points& points = fit.data().points;
   Eigen::VectorXd squared_distances;
-  closest.FindAll(points, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
-                  &feet, &squared_distances);
-  double squares = 0.0;
-  double squares_orthogonal = 0.0;
-  double largest_orthogonal = 0.0;
+  ClosestPoint(curve).FindAll(points,
+                              static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+                              feet, &squared_distances);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    const double squared = (at_parameters.row(i) - points.row(i)).squaredNorm();
     const double weight = fit.data().weights.has_value() ? (*fit.data().weights)[i] : 1.0;
-    squares += squared;
-    report->max = std::max(report->max, std::sqrt(squared));
-    squares_orthogonal += squared_distances[i];
-    largest_orthogonal = std::max(largest_orthogonal, squared_distances[i]);
     report->energy_at_foot_points += term_weight * weight * squared_distances[i];
   }
-  const auto m = static_cast<double>(points.rows());
-  report->rms = std::sqrt(squares / m);
-  report->rms_orthogonal = std::sqrt(squares_orthogonal / m);
-  report->max_orthogonal = std::sqrt(largest_orthogonal);
+  report->rms_orthogonal = std::sqrt(squared_distances.sum() / static_cast<double>(points.rows()));
+  report->max_orthogonal = std::sqrt(squared_distances.maxCoeff());
 }
 
-/// Text that reads back to the same double; no finite number: null.
-std::string JsonNumber(double value) {
-  if (!std::isfinite(value)) return "null";
-  // "-0" would be read as an integer, which has no negative zero.
-  return value == 0.0 && std::signbit(value) ? "-0.0" : NumberText(value);
-}
-
-void WriteNumbers(const double* values, Eigen::Index count, std::ostream* stream) {
-  *stream << '[';
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (i > 0) *stream << ", ";
-    *stream << JsonNumber(values[i]);
+/// The curve's shape beside the data that count. A curve on the line has none: it lies on itself.
+std::optional<CurveShape> ShapeBesideData(const CurveFit& fit, const BsplineCurve& curve,
+                                          const Eigen::VectorXd& feet) {
+  if (fit.dimension() < 2) return std::nullopt;
+  if (!fit.data().weights.has_value()) return MeasureShape(curve, fit.data().points, feet);
+  std::vector<Eigen::Index> counted;
+  for (Eigen::Index i = 0; i < feet.size(); ++i) {
+    if ((*fit.data().weights)[i] > 0.0) counted.push_back(i);
   }
-  *stream << ']';
-}
-
-void WriteRows(const Points& points, const char* separator, std::ostream* stream) {
-  *stream << '[';
-  for (Eigen::Index j = 0; j < points.rows(); ++j) {
-    *stream << (j > 0 ? "," : "") << separator;
-    WriteNumbers(points.data() + j * points.cols(), points.cols(), stream);
-  }
-  *stream << ']';
-}
-
-std::string Dump(const Json& value) {
-  // Names and messages may hold anything a user typed: bad UTF-8 is replaced, not thrown at.
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// Energy of each term at the end, in the user's units.
-Json TermEnergies(const Problem& problem, const RunResult& run) {
-  Json terms = Json::array();
-  for (const Problem::TermInstance& term : problem.terms()) {
-    double energy = 0.0;
-    const BlockFamily& family = *term.family;
-    const bool known = run.x.size() == problem.num_variables() &&
-                       family.Evaluate(run.x, 0, family.size(), &energy, nullptr) == Status::kOk;
-    if (!known) energy = std::numeric_limits<double>::quiet_NaN();
-    terms.push_back({{"name", term.name}, {"energy", energy * problem.units().energy}});
-  }
-  return terms;
-}
-
-/// Everything of fit.json but the spline and the parameters, which may be long.
-Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
-            const FitReport& report) {
-  const Counts& counts = run.counts;
-  Json json;
-  json["problem"] = problem.name();
-  json["energy"] = run.energy;
-  json["energy_at_foot_points"] = report.energy_at_foot_points;
-  json["terms"] = TermEnergies(problem, run);
-  json["gradient_norm"] = run.gradient_norm;
-  json["distance"] = {{"rms", report.rms},
-                      {"max", report.max},
-                      {"rms_orthogonal", report.rms_orthogonal},
-                      {"max_orthogonal", report.max_orthogonal}};
-  json["solver"] = run.solver.ToString();
-  json["options"] = run.options;
-  json["mode"] = ToString(spec.mode);
-  json["seed"] = spec.seed;
-  json["threads"] = spec.threads;
-  json["stop"] = ToString(run.outcome.reason);
-  json["message"] = run.outcome.message;
-  json["notes"] = Json::array();
-  for (const auto& [name, value] : run.notes) {
-    json["notes"].push_back({{"name", name}, {"value", value}});
-  }
-  json["iterations"] = run.iterations;
-  json["counts"] = {
-      {"energy_calls", counts.energy_calls},     {"gradient_calls", counts.gradient_calls},
-      {"jacobian_calls", counts.jacobian_calls}, {"products", counts.products},
-      {"projections", counts.projections},       {"distinct_points", counts.distinct_points}};
-  json["seconds"] = run.seconds;
-  json["setup_seconds"] = run.setup_seconds;
-  json["cpu_seconds"] = run.cpu_seconds;
-  json["start"] = {{"energy", run.start_energy}, {"gradient_norm", run.start_gradient_norm}};
-  json["audit"] = nullptr;
-  if (report.audited) {
-    json["audit"] = {{"verified", report.verdict.holds},
-                     {"failure", report.verdict.failure},
-                     {"energy", report.audit.energy},
-                     {"gradient_norm", report.audit.gradient_norm},
-                     {"gradient_floor", report.audit.gradient_floor},
-                     {"rms", report.audit.rms_distance},
-                     {"max", report.audit.max_distance}};
-  }
-  json["version"] = kVersion;
-  json["commit"] = kGitCommit;
-  return json;
+  return MeasureShape(curve, fit.data().points(counted, Eigen::all), feet(counted));
 }
 
 }  // namespace
@@ -185,12 +120,15 @@ FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec
     report.energy_at_foot_points = nan;
     return report;
   }
-  const Points control_points = fit->ControlPoints(run.x);
-  const double weight = InterpolationWeight(problem);
+  const BsplineCurve curve = fit->Curve(run.x);
+  const double weight = DistanceWeight(problem);
   report.audited = !std::isnan(weight);
-  MeasureDistances(*fit, control_points, report.audited ? weight : 1.0, &report);
+  Eigen::VectorXd feet = fit->Parameters(run.x);
+  MeasureDistances(*fit, curve, feet, &report);
+  MeasureFootPoints(*fit, curve, report.audited ? weight : 1.0, &feet, &report);
+  report.shape = ShapeBesideData(*fit, curve, feet);
   if (report.audited) {
-    report.audit = Audit(PlainNumbers(*fit, control_points, weight));
+    report.audit = Audit(PlainNumbers(problem, run.x, weight));
     report.verdict = Verify(ClaimOf(run, spec), report.audit);
   }
   return report;
@@ -223,52 +161,6 @@ Claim ClaimOf(const RunResult& run, const RunSpec& spec) {
       break;
   }
   return claim;
-}
-
-void WriteFitJson(const Problem& problem, const RunResult& run, const RunSpec& spec,
-                  const FitReport& report, std::ostream* stream) {
-  *stream << "{\n  \"format\": \"batten.fit/1\"";
-  if (const CurveFit* fit = problem.curve_fit()) {
-    const BsplineBasis& basis = fit->basis();
-    *stream << ",\n  \"spline\": {\n    \"degree\": " << basis.degree()
-            << ",\n    \"periodic\": " << (basis.periodic() ? "true" : "false")
-            << ",\n    \"dimension\": " << fit->dimension() << ",\n    \"knots\": ";
-    WriteNumbers(basis.knots().data(), static_cast<Eigen::Index>(basis.knots().size()), stream);
-    *stream << ",\n    \"control_points\": ";
-    WriteRows(run.x.size() == problem.num_variables() ? fit->ControlPoints(run.x) : Points(),
-              "\n      ", stream);
-    *stream << "\n  },\n  \"parameter_kind\": \"fixed\",\n  \"parameters\": ";
-    WriteNumbers(fit->parameters().data(), fit->parameters().size(), stream);
-  }
-  const Json header = Header(problem, run, spec, report);
-  for (const auto& [key, value] : header.items()) {
-    *stream << ",\n  " << Dump(Json(key)) << ": " << Dump(value);
-  }
-  *stream << "\n}\n";
-}
-
-std::string FitJson(const Problem& problem, const RunResult& run, const RunSpec& spec,
-                    const FitReport& report) {
-  std::ostringstream stream;
-  WriteFitJson(problem, run, spec, report, &stream);
-  return stream.str();
-}
-
-std::string IteratesJsonLines(const Problem& problem, const RunResult& run) {
-  const CurveFit* fit = problem.curve_fit();
-  std::ostringstream stream;
-  for (const Iterate& iterate : run.iterates) {
-    stream << "{\"iteration\": " << iterate.iteration << ", \"control_points\": ";
-    if (fit != nullptr) {
-      WriteRows(fit->ControlPoints(iterate.x), "", &stream);
-      stream << ", \"parameters\": ";
-      WriteNumbers(fit->parameters().data(), fit->parameters().size(), &stream);
-    } else {
-      WriteNumbers(iterate.x.data(), iterate.x.size(), &stream);
-    }
-    stream << "}\n";
-  }
-  return stream.str();
 }
 
 }  // namespace batten

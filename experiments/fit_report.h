@@ -1,24 +1,27 @@
 #ifndef BATTEN_EXPERIMENTS_FIT_REPORT_H_
 #define BATTEN_EXPERIMENTS_FIT_REPORT_H_
 
+#include <optional>
 #include <ostream>
 #include <string>
 
 #include "experiments/audit.h"
+#include "experiments/curve_shape.h"
 #include "experiments/run.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
 
-/// A run's end measured: distances, foot points and audit, all off the clock.
+/// A run's end measured: distances, foot points, shape and audit, all off the clock.
 struct FitReport {
-  double rms = 0.0;  // distances at the parameters
+  double rms = 0.0;  // distances at the parameters, of free ones those at the end
   double max = 0.0;
   double rms_orthogonal = 0.0;  // at plain closest points (splines/closest_point.h)
   double max_orthogonal = 0.0;
   double energy_at_foot_points = 0.0;  // sum of w |C(foot) - Q|^2
-  /// False where the audit does not apply: it knows the interpolation term without loss, on
-  /// unconstrained control points. `audit` and `verdict` then say nothing.
+  std::optional<CurveShape> shape;     // none in dimension 1, or without a curve
+  /// False where the audit does not apply: it knows the terms interpolation and free_parameter
+  /// without loss, on unconstrained control points. `audit` and `verdict` then say nothing.
   bool audited = false;
   AuditReport audit;
   Verdict verdict;  // of the run's claim against the audit

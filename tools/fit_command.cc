@@ -20,7 +20,7 @@
 DEFINE_string(solver, "lbfgs",
               "The solver with its options, as in lbfgs/memory=5 (batten list solvers).");
 DEFINE_string(trace, "", "CSV, one row per iteration.");
-DEFINE_string(iterates, "", "JSON lines, the control points at each iteration.");
+DEFINE_string(iterates, "", "JSON lines, control points and parameters at each iteration.");
 DEFINE_string(figure, "",
               "SVG of data, control polygon and curve, drawn by gnuplot; its script (.gp) and data "
               "(.dat) stay beside it.");

@@ -24,6 +24,20 @@ std::string Plural(long count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+/// The rule that made them; where they are free, what they start from.
+std::string ParametersText(const CurveFit& fit) {
+  const FitSpec& spec = fit.spec();
+  const std::string rule = spec.parameters.has_value() ? ToString(*spec.parameters) : "given";
+  if (!fit.has_free_parameters()) return rule;
+  std::string start = rule;
+  if (spec.start_points.size() > 0) {
+    start = "at the feet on the given curve";
+  } else if (spec.start == "circle" || spec.start == "ellipse") {
+    start = "at the feet on the " + spec.start;
+  }
+  return "free, start " + start + (spec.hold_ends ? ", ends held" : "");
+}
+
 std::string CurveLines(const std::string& label, const Problem& problem) {
   const CurveFit* fit = problem.curve_fit();
   if (fit == nullptr) return Line("fitted", label);
@@ -34,7 +48,7 @@ std::string CurveLines(const std::string& label, const Problem& problem) {
                                         " curve of degree " + std::to_string(basis.degree()) +
                                         ", " + Plural(basis.num_control_points(), "control point"));
   const FitSpec& spec = fit->spec();
-  text += Line("parameters", spec.parameters.has_value() ? ToString(*spec.parameters) : "given");
+  text += Line("parameters", ParametersText(*fit));
   return text + Line("knots", spec.given_knots.empty() ? ToString(spec.knots) : "given");
 }
 
@@ -65,8 +79,10 @@ std::string EnergyLines(const Problem& problem, const RunResult& run) {
     if (family.Evaluate(run.x, 0, family.size(), &energy, nullptr) != Status::kOk) energy = NAN;
     text += Line("", terms[k].name + " " + Short(energy * problem.units().energy));
   }
-  if (problem.curve_fit() != nullptr && problem.terms().size() == 1) {
-    const std::string shortage = DataShortageText(*problem.curve_fit());
+  const CurveFit* fit = problem.curve_fit();
+  // Where parameters are free, minima are many anyway.
+  if (fit != nullptr && !fit->has_free_parameters() && problem.terms().size() == 1) {
+    const std::string shortage = DataShortageText(*fit);
     if (!shortage.empty()) text += Line("", "not the only minimum: " + shortage);
   }
   return text + Line("gradient |g|", Short(run.gradient_norm) + " (start " +
@@ -74,8 +90,15 @@ std::string EnergyLines(const Problem& problem, const RunResult& run) {
                                          Short(run.gradient_floor) + ")");
 }
 
+std::string ShapeText(const CurveShape& shape) {
+  const int loops = shape.num_free_loops;
+  return "length " + Short(shape.length) + ", turning " + Short(shape.turning / (2.0 * M_PI)) +
+         " x 2 pi, curve to data " + Short(shape.max_distance_to_data) + "; " +
+         (loops == 0 ? "no loops" : Plural(loops, "loop")) + " without data";
+}
+
 std::string AuditText(const FitReport& report) {
-  if (!report.audited) return "none: it covers interpolation without loss and constraints only";
+  if (!report.audited) return "none: it covers distances without loss and constraints only";
   if (!report.verdict.holds) return "FAILED: " + report.verdict.failure;
   return "verified: E " + Short(report.audit.energy) + ", |g| " + Short(report.audit.gradient_norm);
 }
@@ -90,6 +113,7 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
                                " (at the parameters)");
   text += Line("", "rms " + Short(report.rms_orthogonal) + ", largest " +
                        Short(report.max_orthogonal) + " (orthogonal)");
+  if (report.shape.has_value()) text += Line("shape", ShapeText(*report.shape));
   text += Line("calls", "E " + std::to_string(counts.energy_calls) + ", g " +
                             std::to_string(counts.gradient_calls) + ", Jacobian " +
                             std::to_string(counts.jacobian_calls) + ", products " +

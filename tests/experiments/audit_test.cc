@@ -178,6 +178,145 @@ TEST(Audit, FloorsAreWhatRoundingOfTheControlPointsIsWorth) {
   }
 }
 
+/// All parameters move.
+AuditedFit Freed(AuditedFit fit) {
+  fit.parameter_states.assign(fit.parameters.size(), ParameterState::kMoves);
+  return fit;
+}
+
+TEST(Audit, TakesTheGradientInFreeParametersTimesTheLength) {
+  AuditedFit fit = Freed(BezierSegment());
+  // C'(1/2) = 3/4 (P3 + P2 - P1 - P0) = (4.5, 0.75), r = (0, -1/8): dE/dt = -0.1875.
+  for (const double length : {1.0, 2.0, 1024.0}) {
+    fit.length = length;
+    const double by_control_points = 0.25 * std::sqrt(20.0) / 8;
+    EXPECT_NEAR(Audit(fit).gradient_norm, std::hypot(by_control_points, 0.1875 / length),
+                kFewRoundings);
+  }
+  fit.weights = {3.0};
+  fit.length = 1.0;
+  EXPECT_NEAR(Audit(fit).gradient_norm, 3 * std::hypot(0.25 * std::sqrt(20.0) / 8, 0.1875),
+              3 * kFewRoundings);
+  EXPECT_EQ(Audit(fit).pull_norm, 0.0);
+}
+
+TEST(Audit, LeavesOutParametersThatAreHeld) {
+  AuditedFit fit = BezierSegment();
+  const double fixed = Audit(fit).gradient_norm;
+  fit.parameter_states = {ParameterState::kHeld};
+  EXPECT_EQ(Audit(fit).gradient_norm, fixed);
+  EXPECT_EQ(Audit(fit).pull_norm, 0.0);
+}
+
+TEST(Audit, TellsPressedParametersPastAnEndFromThoseThatEDrawsBack) {
+  // C'(0) = (3, 6), C'(1) = (3, -9).
+  struct Case {
+    double t;
+    std::vector<double> point;
+    double pull;  // 2 |C' . r| where E falls into the domain
+  };
+  const Case cases[] = {
+      {0.0, {1, 0}, 2 * 3}, {0.0, {-1, 0}, 0}, {1.0, {3, 0}, 2 * 3}, {1.0, {4, -2}, 0}};
+  for (const Case& one : cases) {
+    AuditedFit fit = BezierSegment();
+    fit.parameters = {one.t};
+    fit.points = one.point;
+    const double fixed = Audit(fit).gradient_norm;
+    fit.parameter_states = {ParameterState::kPastEnd};
+    EXPECT_EQ(Audit(fit).gradient_norm, fixed);
+    EXPECT_NEAR(Audit(fit).pull_norm, one.pull, 8 * kFewRoundings);
+    // At the end itself it counts, wherever it presses.
+    fit.parameter_states = {ParameterState::kMoves};
+    EXPECT_GT(Audit(fit).gradient_norm, fixed);
+    EXPECT_EQ(Audit(fit).pull_norm, 0.0);
+  }
+}
+
+TEST(Audit, TakesDegreeOneAtKnotsToTheRightAndAtTheEndToTheLeft) {
+  AuditedFit fit;
+  fit.degree = 1;
+  fit.dimension = 1;
+  fit.knots = {0, 0, 1, 3, 3};
+  fit.control_points = {0, 2, 12};  // slopes 2 and 5
+  const auto by_parameter = [&fit](double t, double point) {
+    fit.parameters = {t};
+    fit.points = {point};
+    fit.parameter_states.clear();
+    const double fixed = Audit(fit).gradient_norm;
+    return std::sqrt(std::pow(Audit(Freed(fit)).gradient_norm, 2) - fixed * fixed);
+  };
+  const double tolerance = 1e3 * kEpsilon;
+  EXPECT_NEAR(by_parameter(0.5, 0), 2 * 2 * 1, tolerance);
+  EXPECT_NEAR(by_parameter(1.0, 0), 2 * 5 * 2, tolerance);
+  EXPECT_NEAR(by_parameter(3.0, 11), 2 * 5 * 1, tolerance);
+}
+
+/// Knots without symmetry; points near the curve.
+AuditedFit UnevenFit(int degree, bool periodic) {
+  std::mt19937 random(20260103);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  AuditedFit fit;
+  fit.degree = degree;
+  fit.periodic = periodic;
+  fit.dimension = 2;
+  const int n = degree + 4;
+  std::vector<double> steps(n);
+  for (double& step : steps) step = 0.3 + uniform(random);
+  fit.knots = {0.0};
+  for (int k = 0; k < (periodic ? n + 2 * degree : n + degree); ++k) {
+    fit.knots.push_back(fit.knots.back() + steps[k % n]);
+  }
+  for (int k = 0; k < 2 * n; ++k) fit.control_points.push_back(uniform(random));
+  const double begin = fit.knots[degree];
+  const double end = fit.knots[periodic ? n + degree : n];
+  for (int i = 0; i < 30; ++i) {
+    fit.parameters.push_back(begin + (end - begin) * (0.01 + 0.98 * uniform(random)));
+    fit.points.push_back(uniform(random));
+    fit.points.push_back(uniform(random));
+    fit.weights.push_back(0.5 + uniform(random));
+  }
+  return fit;
+}
+
+TEST(Audit, AgreesWithDifferencesOfItsEnergyInEveryDegree) {
+  const double step = std::cbrt(kEpsilon);
+  for (int degree = 1; degree <= 9; ++degree) {
+    for (const bool periodic : {false, true}) {
+      const AuditedFit fit = UnevenFit(degree, periodic);
+      double squares = 0.0;
+      for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+        AuditedFit moved = fit;
+        moved.parameters[i] = fit.parameters[i] + step;
+        const double above = Audit(moved).energy;
+        moved.parameters[i] = fit.parameters[i] - step;
+        const double slope = (above - Audit(moved).energy) / (2 * step);
+        squares += slope * slope;
+      }
+      const double by_control_points = Audit(fit).gradient_norm;
+      const double expected = std::hypot(by_control_points, std::sqrt(squares));
+      // Errors of step^2 and eps / step, times derivatives of some tens.
+      EXPECT_NEAR(Audit(Freed(fit)).gradient_norm, expected, 1e-8 * expected) << degree << periodic;
+    }
+  }
+}
+
+TEST(Audit, FloorsCoverRoundingOfTheDerivativeByParameters) {
+  for (const double shift : {0.0, 1e6}) {
+    AuditedFit fit = Freed(NoisyCircle(20, 100, shift));
+    const AuditReport before = Audit(fit);
+    // Neighbours are rounded against each other: the worst for differences.
+    double sign = 1.0;
+    for (std::size_t k = 0; k < fit.control_points.size(); k += 2) {
+      fit.control_points[k] *= 1 + sign * kEpsilon;
+      fit.control_points[k + 1] *= 1 + sign * kEpsilon;
+      sign = -sign;
+    }
+    const AuditReport after = Audit(fit);
+    EXPECT_LE(std::abs(after.gradient_norm - before.gradient_norm), 2 * before.gradient_floor);
+    EXPECT_LT(before.gradient_floor, 1e-13 * (1 + shift));
+  }
+}
+
 Claim TrueClaim(const AuditReport& report) {
   Claim claim;
   claim.energy = report.energy;
@@ -244,6 +383,25 @@ TEST(Verify, CatchesAMinimumAboveTheStart) {
   EXPECT_THAT(Verify(claim, report).failure, HasSubstr("above the start's"));
   claim.start_energy = kNan;  // not known
   EXPECT_TRUE(Verify(claim, report).holds);
+}
+
+TEST(Verify, CatchesAMinimumWhoseParametersAreDrawnBackIntoTheDomain) {
+  AuditedFit fit = BezierSegment();
+  fit.parameters = {1.0};
+  fit.points = {3, 0};
+  fit.parameter_states = {ParameterState::kPastEnd};
+  const AuditReport report = Audit(fit);
+  Claim claim = TrueClaim(report);
+  EXPECT_TRUE(Verify(claim, report).holds);  // it claims no minimum
+  claim.minimum = true;
+  claim.gradient_target = report.gradient_norm;
+  EXPECT_THAT(Verify(claim, report).failure, HasSubstr("past an end"));
+  fit.points = {4, -2};  // pressed outwards
+  const AuditReport pressed = Audit(fit);
+  claim = TrueClaim(pressed);
+  claim.minimum = true;
+  claim.gradient_target = pressed.gradient_norm;
+  EXPECT_TRUE(Verify(claim, pressed).holds) << Verify(claim, pressed).failure;
 }
 
 TEST(Verify, CatchesNumbersThatAreNone) {

@@ -114,6 +114,159 @@ TEST(MeasureFit, DoesNotAuditALoss) {
   EXPECT_GT(report.rms, 0.0);
 }
 
+/// A wave of 60 points, open or closed, with weights; parameters are free.
+std::unique_ptr<Problem> FreeWave(int degree, bool closed, bool hold_ends) {
+  DataSet data;
+  data.name = "wave";
+  data.points.resize(60, 2);
+  for (int i = 0; i < 60; ++i) {
+    const double a = 2 * M_PI * i / 60;
+    if (closed) {
+      data.points.row(i) << 50 + 9 * std::cos(a), 5 * std::sin(a) + std::sin(3 * a);
+    } else {
+      data.points.row(i) << 50 + 3 * a, 5 * std::sin(a) + 0.3 * std::sin(9 * a);
+    }
+  }
+  data.weights = Eigen::VectorXd::LinSpaced(60, 0.0, 2.0);
+  FitSpec spec;
+  spec.degree = degree;
+  spec.closed = closed;
+  spec.hold_ends = hold_ends;
+  spec.parameter_kind = ParameterKind::kFree;
+  spec.terms = {{"free_parameter", {{"weight", "3"}}, nullptr}};
+  return MakeProblem(std::move(data), std::move(spec));
+}
+
+TEST(MeasureFit, AuditsFreeParametersWhereverARunEnds) {
+  for (const int degree : {1, 2, 3, 4}) {
+    for (const auto& [closed, hold_ends] :
+         {std::pair(true, false), std::pair(false, false), std::pair(false, true)}) {
+      const auto problem = FreeWave(degree, closed, hold_ends);
+      for (const char* solver : {"foot_newton", "newton", "lm_schur", "tdm", "lbfgs"}) {
+        for (const int iterations : {0, 3, 200}) {
+          RunSpec spec;
+          spec.max_iterations = iterations;
+          const RunResult run = RunSolver(*problem, solver, spec);
+          const FitReport report = MeasureFit(*problem, run, spec);
+          EXPECT_TRUE(report.audited && report.verdict.holds)
+              << solver << degree << closed << hold_ends << iterations << report.verdict.failure;
+          // E and the distances at the parameters, where they are at the end.
+          EXPECT_NEAR(report.rms, report.audit.rms_distance, 1e-12);
+          EXPECT_LE(report.energy_at_foot_points, run.energy * (1 + 1e-12));
+        }
+      }
+    }
+  }
+}
+
+TEST(MeasureFit, ComesToTheFootPointsWhereParametersAreFree) {
+  const auto problem = FreeWave(3, true, false);
+  const RunResult run = RunSolver(*problem, "foot_newton", {});
+  const FitReport report = MeasureFit(*problem, run, {});
+  EXPECT_EQ(run.outcome.reason, StopReason::kGradientSmall);
+  EXPECT_NEAR(report.energy_at_foot_points, run.energy, 1e-8 * run.energy);
+  EXPECT_GT((problem->curve_fit()->Parameters(run.x) - problem->curve_fit()->parameters())
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-3);
+}
+
+TEST(MeasureFit, CatchesALieAboutFreeParameters) {
+  const auto problem = FreeWave(3, true, false);
+  RunResult run = RunSolver(*problem, "foot_newton", {});
+  run.x[problem->curve_fit()->setting().parameter_offset + 40] += 1e-4;
+  EXPECT_FALSE(MeasureFit(*problem, run, {}).verdict.holds);
+}
+
+TEST(MeasureFit, FollowsParametersPastAnEndAsTheRunDoes) {
+  const auto problem = FreeWave(3, false, false);
+  const int first = problem->curve_fit()->setting().parameter_offset;
+  RunSpec spec;
+  spec.max_iterations = 0;
+  spec.start = problem->start();
+  spec.start[first] = -0.5;
+  spec.start[first + 30] = 1.25;  // whose point is in the middle
+  const RunResult run = RunSolver(*problem, "lbfgs", spec);
+  const FitReport report = MeasureFit(*problem, run, spec);
+  EXPECT_TRUE(report.verdict.holds) << report.verdict.failure;
+  EXPECT_GT(report.audit.pull_norm, report.audit.gradient_floor);
+  const Json json = Json::parse(FitJson(*problem, run, spec, report));
+  EXPECT_EQ(json["parameters"][0], 0.0);
+  EXPECT_EQ(json["parameters"][30], 1.0);
+}
+
+TEST(MeasureFit, DoesNotAuditFreeParametersWithALoss) {
+  FitSpec spec;
+  spec.parameter_kind = ParameterKind::kFree;
+  spec.terms = {{"free_parameter", {{"loss", "huber"}}, nullptr}};
+  const auto problem = MakeProblem(Zigzag(40), spec);
+  RunSpec run_spec;
+  run_spec.max_iterations = 20;
+  const RunResult run = RunSolver(*problem, "lbfgs", run_spec);
+  const FitReport report = MeasureFit(*problem, run, run_spec);
+  EXPECT_FALSE(report.audited);
+  EXPECT_GT(report.rms, 0.0);
+}
+
+TEST(MeasureFit, SeesTheShapeBesideTheDataThatCount) {
+  // A closed curve around a square; the one point far away has no weight.
+  DataSet data;
+  data.points.resize(5, 2);
+  data.points << 0, 0, 1, 0, 1, 1, 0, 1, 1000, 1000;
+  data.weights = Eigen::VectorXd::Ones(5);
+  (*data.weights)[4] = 0.0;
+  data.parameters = Eigen::VectorXd(5);
+  *data.parameters << 0.0, 0.25, 0.5, 0.75, 0.8;
+  FitSpec spec;
+  spec.degree = 1;
+  spec.closed = true;
+  spec.control_points = 4;
+  spec.parameters.reset();
+  const auto problem = MakeProblem(std::move(data), std::move(spec));
+  const RunResult run = RunSolver(*problem, "banded_qr", {});
+  const FitReport report = MeasureFit(*problem, run, {});
+  ASSERT_TRUE(report.shape.has_value());
+  EXPECT_NEAR(report.shape->length, 4.0, 1e-9);
+  EXPECT_NEAR(report.shape->rotation, 1.0, 1e-9);
+  EXPECT_NEAR(report.shape->max_distance_to_data, 0.5, 1e-3);
+  const Json json = Json::parse(FitJson(*problem, run, {}, report));
+  EXPECT_EQ(json["shape"]["length"].get<double>(), report.shape->length);
+  EXPECT_EQ(json["shape"]["turning"].get<double>(), report.shape->turning);
+  EXPECT_EQ(json["shape"]["rotation"].get<double>(), report.shape->rotation);
+  EXPECT_EQ(json["shape"]["num_free_loops"], 0);
+  EXPECT_EQ(json["shape"]["longest_free_arc"].get<double>(), report.shape->longest_free_arc);
+}
+
+TEST(FitJson, HasNoShapeWhereThereIsNone) {
+  DataSet line;
+  line.points.resize(9, 1);
+  for (int i = 0; i < 9; ++i) line.points(i, 0) = i * i;
+  const auto problem = MakeProblem(std::move(line), {});
+  const RunResult run = RunSolver(*problem, "banded_qr", {});
+  const Json json = Json::parse(FitJson(*problem, run, {}, MeasureFit(*problem, run, {})));
+  EXPECT_TRUE(json["shape"].is_null());
+}
+
+TEST(FitJson, HasTheFreeParametersOfTheEnd) {
+  const auto problem = FreeWave(3, true, false);
+  RunSpec spec;
+  spec.keep_iterates = true;
+  const RunResult run = RunSolver(*problem, "foot_newton", spec);
+  const Json json = Json::parse(FitJson(*problem, run, spec, MeasureFit(*problem, run, spec)));
+  EXPECT_EQ(json["parameter_kind"], "free");
+  EXPECT_EQ(json["audit"]["verified"], true);
+  const Eigen::VectorXd end = problem->curve_fit()->Parameters(run.x);
+  const auto parameters = json["parameters"].get<std::vector<double>>();
+  ASSERT_EQ(parameters.size(), 60u);
+  EXPECT_EQ(Eigen::Map<const Eigen::VectorXd>(parameters.data(), 60), end);
+
+  std::istringstream lines(IteratesJsonLines(*problem, run));
+  std::string line;
+  std::string last;
+  while (std::getline(lines, line)) last = line;
+  EXPECT_EQ(Json::parse(last)["parameters"].get<std::vector<double>>(), parameters);
+}
+
 TEST(ClaimOf, AsksOfARunWhatItsReasonSays) {
   RunSpec spec;
   spec.gradient_tolerance = 1e-10;

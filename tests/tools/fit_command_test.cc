@@ -77,6 +77,53 @@ TEST(FitCommand, ReachesTheMinimumWithEverySolverOfTheList) {
   }
 }
 
+TEST(FitCommand, FitsFreeParametersAndReportsThemWhereTheyEnd) {
+  const TemporaryFolder folder;
+  const auto fit = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"fit",
+                                          kRhino,
+                                          "--control_points=20",
+                                          "--parameter_kind=free",
+                                          "--solver=foot_newton",
+                                          "--out=" + (folder / "fit.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = RunBatten(arguments);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return ended.out;
+  };
+  const std::string circle = fit({"--closed", "--start=circle"});
+  EXPECT_THAT(circle, HasSubstr("parameters    free, start at the feet on the circle\n"));
+  EXPECT_THAT(circle, HasSubstr("verified"));
+  const json closed = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_EQ(closed["parameter_kind"], "free");
+  EXPECT_EQ(closed["audit"]["verified"], true);
+  EXPECT_EQ(closed["parameters"].size(), 100u);
+  EXPECT_LE(closed["energy_at_foot_points"].get<double>(), closed["energy"].get<double>());
+  // E is that of the parameters written: the mean square beside it says the same.
+  const double rms = closed["distance"]["rms"];
+  EXPECT_NEAR(100 * rms * rms, closed["energy"].get<double>(), 1e-9 * rms * rms);
+
+  const std::string held = fit({"--hold_ends", "--parameters=uniform"});
+  EXPECT_THAT(held, HasSubstr("parameters    free, start uniform, ends held\n"));
+  const json open = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_EQ(open["parameters"][0], 0.0);
+  EXPECT_EQ(open["parameters"][99], 1.0);
+}
+
+TEST(FitCommand, SaysWhatShapeTheCurveHas) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"fit", "-", "--control_points=4", "--degree=1", "--closed",
+                                 "--out=" + (folder / "fit.json")},
+                                "x,y\n0,0\n1,0\n1,1\n0,1\n");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out,
+              HasSubstr("shape         length 4.00000, turning 1.00000 x 2 pi, curve to data "
+                        "0.500000; no loops without data\n"));
+  const json fit = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_NEAR(fit["shape"]["length"].get<double>(), 4.0, 1e-9);
+  EXPECT_EQ(fit["shape"]["num_free_loops"], 0);
+}
+
 TEST(FitCommand, LowersTheEnergyWithEverySolverOfFreeParameters) {
   const json list = RunBatten({"list", "solvers", "--json"}).Json();
   int num_solvers = 0;

@@ -1,0 +1,171 @@
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cost_functions/options.h"
+#include "experiments/build_info.h"
+#include "experiments/fit_report.h"
+
+namespace batten {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Text that reads back to the same double; no finite number: null.
+std::string JsonNumber(double value) {
+  if (!std::isfinite(value)) return "null";
+  // "-0" would be read as an integer, which has no negative zero.
+  return value == 0.0 && std::signbit(value) ? "-0.0" : NumberText(value);
+}
+
+void WriteNumbers(const double* values, Eigen::Index count, std::ostream* stream) {
+  *stream << '[';
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (i > 0) *stream << ", ";
+    *stream << JsonNumber(values[i]);
+  }
+  *stream << ']';
+}
+
+void WriteRows(const Points& points, const char* separator, std::ostream* stream) {
+  *stream << '[';
+  for (Eigen::Index j = 0; j < points.rows(); ++j) {
+    *stream << (j > 0 ? "," : "") << separator;
+    WriteNumbers(points.data() + j * points.cols(), points.cols(), stream);
+  }
+  *stream << ']';
+}
+
+std::string Dump(const Json& value) {
+  // Names and messages may hold anything a user typed: bad UTF-8 is replaced, not thrown at.
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Energy of each term at the end, in the user's units.
+Json TermEnergies(const Problem& problem, const RunResult& run) {
+  Json terms = Json::array();
+  for (const Problem::TermInstance& term : problem.terms()) {
+    double energy = 0.0;
+    const BlockFamily& family = *term.family;
+    const bool known = run.x.size() == problem.num_variables() &&
+                       family.Evaluate(run.x, 0, family.size(), &energy, nullptr) == Status::kOk;
+    if (!known) energy = std::numeric_limits<double>::quiet_NaN();
+    terms.push_back({{"name", term.name}, {"energy", energy * problem.units().energy}});
+  }
+  return terms;
+}
+
+Json ShapeJson(const FitReport& report) {
+  if (!report.shape.has_value()) return nullptr;
+  const CurveShape& shape = *report.shape;
+  return {{"length", shape.length},
+          {"turning", shape.turning},
+          {"rotation", shape.rotation},
+          {"max_distance_to_data", shape.max_distance_to_data},
+          {"num_free_loops", shape.num_free_loops},
+          {"longest_free_arc", shape.longest_free_arc}};
+}
+
+/// Everything of fit.json but the spline and the parameters, which may be long.
+Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
+            const FitReport& report) {
+  const Counts& counts = run.counts;
+  Json json;
+  json["problem"] = problem.name();
+  json["energy"] = run.energy;
+  json["energy_at_foot_points"] = report.energy_at_foot_points;
+  json["terms"] = TermEnergies(problem, run);
+  json["gradient_norm"] = run.gradient_norm;
+  json["distance"] = {{"rms", report.rms},
+                      {"max", report.max},
+                      {"rms_orthogonal", report.rms_orthogonal},
+                      {"max_orthogonal", report.max_orthogonal}};
+  json["shape"] = ShapeJson(report);
+  json["solver"] = run.solver.ToString();
+  json["options"] = run.options;
+  json["mode"] = ToString(spec.mode);
+  json["seed"] = spec.seed;
+  json["threads"] = spec.threads;
+  json["stop"] = ToString(run.outcome.reason);
+  json["message"] = run.outcome.message;
+  json["notes"] = Json::array();
+  for (const auto& [name, value] : run.notes) {
+    json["notes"].push_back({{"name", name}, {"value", value}});
+  }
+  json["iterations"] = run.iterations;
+  json["counts"] = {
+      {"energy_calls", counts.energy_calls},     {"gradient_calls", counts.gradient_calls},
+      {"jacobian_calls", counts.jacobian_calls}, {"products", counts.products},
+      {"projections", counts.projections},       {"distinct_points", counts.distinct_points}};
+  json["seconds"] = run.seconds;
+  json["setup_seconds"] = run.setup_seconds;
+  json["cpu_seconds"] = run.cpu_seconds;
+  json["start"] = {{"energy", run.start_energy}, {"gradient_norm", run.start_gradient_norm}};
+  json["audit"] = nullptr;
+  if (report.audited) {
+    json["audit"] = {{"verified", report.verdict.holds},
+                     {"failure", report.verdict.failure},
+                     {"energy", report.audit.energy},
+                     {"gradient_norm", report.audit.gradient_norm},
+                     {"gradient_floor", report.audit.gradient_floor},
+                     {"rms", report.audit.rms_distance},
+                     {"max", report.audit.max_distance}};
+  }
+  json["version"] = kVersion;
+  json["commit"] = kGitCommit;
+  return json;
+}
+
+}  // namespace
+
+void WriteFitJson(const Problem& problem, const RunResult& run, const RunSpec& spec,
+                  const FitReport& report, std::ostream* stream) {
+  *stream << "{\n  \"format\": \"batten.fit/1\"";
+  if (const CurveFit* fit = problem.curve_fit()) {
+    const BsplineBasis& basis = fit->basis();
+    *stream << ",\n  \"spline\": {\n    \"degree\": " << basis.degree()
+            << ",\n    \"periodic\": " << (basis.periodic() ? "true" : "false")
+            << ",\n    \"dimension\": " << fit->dimension() << ",\n    \"knots\": ";
+    WriteNumbers(basis.knots().data(), static_cast<Eigen::Index>(basis.knots().size()), stream);
+    *stream << ",\n    \"control_points\": ";
+    const bool is_complete = run.x.size() == problem.num_variables();
+    WriteRows(is_complete ? fit->ControlPoints(run.x) : Points(), "\n      ", stream);
+    *stream << "\n  },\n  \"parameter_kind\": \"" << ToString(fit->spec().parameter_kind)
+            << "\",\n  \"parameters\": ";
+    const Eigen::VectorXd t = is_complete ? fit->Parameters(run.x) : fit->parameters();
+    WriteNumbers(t.data(), t.size(), stream);
+  }
+  const Json header = Header(problem, run, spec, report);
+  for (const auto& [key, value] : header.items()) {
+    *stream << ",\n  " << Dump(Json(key)) << ": " << Dump(value);
+  }
+  *stream << "\n}\n";
+}
+
+std::string FitJson(const Problem& problem, const RunResult& run, const RunSpec& spec,
+                    const FitReport& report) {
+  std::ostringstream stream;
+  WriteFitJson(problem, run, spec, report, &stream);
+  return stream.str();
+}
+
+std::string IteratesJsonLines(const Problem& problem, const RunResult& run) {
+  const CurveFit* fit = problem.curve_fit();
+  std::ostringstream stream;
+  for (const Iterate& iterate : run.iterates) {
+    stream << "{\"iteration\": " << iterate.iteration << ", \"control_points\": ";
+    if (fit != nullptr) {
+      WriteRows(fit->ControlPoints(iterate.x), "", &stream);
+      stream << ", \"parameters\": ";
+      const Eigen::VectorXd t = fit->Parameters(iterate.x);
+      WriteNumbers(t.data(), t.size(), &stream);
+    } else {
+      WriteNumbers(iterate.x.data(), iterate.x.size(), &stream);
+    }
+    stream << "}\n";
+  }
+  return stream.str();
+}
+
+}  // namespace batten
