@@ -19,7 +19,7 @@ Reproduction AndersonPaper() {
       "Every error here is E at the foot points, the sum of squared distances of the points from "
       "the curve, computed off the clock for the iterates; what a method that does not project "
       "believes E to be is larger. No stop rule of the paper's is known to us: runs are races to "
-      "|g| <= 1e-8 |g(start)|, with one second and 20,000 iterations at most.\n\n"
+      "|g| <= 1e-8 |g(start)|, with 1.5 seconds and 20,000 iterations at most.\n\n"
       "The problem has many minima, and two methods from one start often end in different ones. So "
       "each run's end is polished: foot points, then `newton` to rounding. Two runs are in one "
       "basin where their polished E agree to 1e-3, and only then are their speeds compared, by the "

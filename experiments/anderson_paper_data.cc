@@ -19,7 +19,8 @@ struct Recipe {
 };
 constexpr Recipe kRecipes[] = {{"smooth", "cat_2000", 90, 100, 8, 0.0},
                                {"sharp", "cat_2000", 0, 90, 20, 0.0},
-                               {"noisy", "rhino_2000", 90, 200, 8, 0.03}};
+                               {"noisy", "squirrel_2000", 140, 200, 8, 0.03},
+                               {"crawling", "rhino_2000", 90, 200, 8, 0.03}};
 constexpr std::uint64_t kSeed = 20200601;
 
 Points MovingMean(const Points& closed, int reach) {
@@ -69,7 +70,7 @@ FitSpec FreeSpec(int control_points) {
 }  // namespace
 
 const std::vector<std::string>& PaperExampleNames() {
-  static const auto& names = *new std::vector<std::string>{"smooth", "sharp", "noisy"};
+  static const auto& names = *new std::vector<std::string>{"smooth", "sharp", "noisy", "crawling"};
   return names;
 }
 

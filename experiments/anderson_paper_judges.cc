@@ -54,10 +54,15 @@ std::string OtherBasin(const Pair& pair) {
          ShortNumber(OnlyNumber(pair.lbfgs, "polished_energy"), kDigits);
 }
 
+/// A count with all its digits.
+std::string Shown(double value) {
+  return value == std::floor(value) ? NumberText(value) : ShortNumber(value, kDigits);
+}
+
 /// "5.2 against 3.1 ms"; one that is not reached is a dash.
 std::string Against(const Pair& pair, const char* column, double factor, const char* unit) {
-  return ShortNumber(factor * OnlyNumber(pair.anderson, column), kDigits) + " against " +
-         ShortNumber(factor * OnlyNumber(pair.lbfgs, column), kDigits) + unit;
+  return Shown(factor * OnlyNumber(pair.anderson, column)) + " against " +
+         Shown(factor * OnlyNumber(pair.lbfgs, column)) + unit;
 }
 
 /// The last error that `trace` has had by `time`; NaN before its first row.

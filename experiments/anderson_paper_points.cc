@@ -56,11 +56,11 @@ Experiment AndersonPaperPoints() {
   experiment.run = &RunPoints;
   experiment.shown = [](const ExperimentTables& tables) { return GrowthShown(tables, kSize); };
   experiment.claims = {
-      {"the cost per iteration is linear in the points", "its section on time",
+      {"the cost per iteration is linear in the points", "its text",
        "holds where the time per iteration of both methods grows no faster than points^1.15, by a "
        "fit of the logarithms, in part where that of one, else does not hold",
        [](const ExperimentTables& tables) { return JudgeLinear(tables, kSize); }},
-      {"PDM, TDM and SDM slow down fast with the size: points", "its introduction",
+      {"PDM, TDM and SDM slow down fast with the size: points", "its text",
        "holds where their times per iteration all grow faster than points^1.5, in part where some "
        "do, else does not hold",
        [](const ExperimentTables& tables) { return JudgeSlowsDown(tables, kSize); }}};

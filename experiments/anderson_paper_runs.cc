@@ -116,25 +116,16 @@ double RejectedShare(const RunResult& result) {
 }  // namespace
 
 std::vector<std::string> FreeRunColumns() {
-  return {"example",
-          "start",
-          "solver",
-          "points",
-          "control_points",
-          "status",
-          "iterations",
-          "projections",
-          "seconds",
-          "seconds_per_iteration",
-          "start_energy",
-          "energy",
-          "foot_energy",
-          "polished_energy",
-          "iterations_to_1e-3",
-          "seconds_to_1e-3",
-          "iterations_to_1e-6",
-          "seconds_to_1e-6",
-          "rejected"};
+  return {"example",         "start",
+          "solver",          "points",
+          "control_points",  "status",
+          "iterations",      "projections",
+          "seconds",         "seconds_per_iteration",
+          "start_energy",    "energy",
+          "foot_energy",     "polished_energy",
+          "length",          "iterations_to_1e-3",
+          "seconds_to_1e-3", "iterations_to_1e-6",
+          "seconds_to_1e-6", "rejected"};
 }
 
 std::vector<std::string> FreeTraceColumns() {
@@ -144,7 +135,7 @@ std::vector<std::string> FreeTraceColumns() {
 RunSpec FreeRaceSpec() {
   RunSpec spec = RaceSpec(1e-8);
   spec.max_iterations = 20'000;
-  spec.max_seconds = 1.0;
+  spec.max_seconds = 1.5;
   spec.keep_iterates = true;
   return spec;
 }
@@ -154,6 +145,18 @@ double FootEnergy(const Problem& problem, const Eigen::VectorXd& x) {
   double energy = kNaN;
   Feet(problem, x, &energy);
   return energy;
+}
+
+Points SampledCurve(const Problem& problem, const Eigen::VectorXd& x) {
+  constexpr int kSamples = 401;
+  const BsplineCurve curve = problem.curve_fit()->Curve(x);
+  return curve.Sample(Eigen::VectorXd::LinSpaced(kSamples, curve.basis().domain_begin(),
+                                                 curve.basis().domain_end()));
+}
+
+double PolygonLength(const Points& polygon) {
+  const Eigen::Index last = polygon.rows() - 1;
+  return (polygon.bottomRows(last) - polygon.topRows(last)).rowwise().norm().sum();
 }
 
 RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& spec,
@@ -177,7 +180,8 @@ RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& 
               std::to_string(result.counts.projections), NumberText(result.seconds),
               NumberText((result.seconds - result.setup_seconds) / std::max(iterations, 1.0)),
               NumberText(kept.empty() ? kNaN : kept.front().energy), NumberText(result.energy),
-              NumberText(FootEnergy(*on.problem, result.x)), NumberText(polished)});
+              NumberText(FootEnergy(*on.problem, result.x)), NumberText(polished),
+              NumberText(PolygonLength(SampledCurve(*on.problem, result.x)))});
   for (const double gap : kGaps) {
     const auto at = std::find_if(kept.begin(), kept.end(), [&](const KeptIterate& point) {
       return point.energy <= (1.0 + gap) * polished;

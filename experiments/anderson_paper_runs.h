@@ -21,7 +21,7 @@ struct PaperExample {
   int control_points = 0;
   Points points;
 };
-/// Of the three examples: smooth, sharp, noisy.
+/// The paper's three, smooth, sharp and noisy, and one of ours, crawling.
 const std::vector<std::string>& PaperExampleNames();
 /// False with one sentence in `error` where data are missing.
 bool PaperExamples(std::vector<PaperExample>* examples, std::string* error);
@@ -58,6 +58,10 @@ double SecondsPerIteration(const Problem& problem, const std::string& solver, in
 
 /// Sum of squared distances of the data from the curve of `x`, in the user's units.
 double FootEnergy(const Problem& problem, const Eigen::VectorXd& x);
+
+/// 401 points of the curve of `x`, evenly spaced in its parameter, and the length of a polygon.
+Points SampledCurve(const Problem& problem, const Eigen::VectorXd& x);
+double PolygonLength(const Points& polygon);
 
 /// The cell of a table that has one row, else NaN.
 double OnlyNumber(const CsvTable& rows, const std::string& column);

@@ -7,7 +7,6 @@
 #include "experiments/anderson_paper_judges.h"
 #include "experiments/anderson_paper_runs.h"
 #include "experiments/experiment_runs.h"
-#include "experiments/short_number.h"
 #include "solvers/lanczos.h"
 
 namespace batten {
@@ -93,8 +92,8 @@ Judgement JudgeStarts(const ExperimentTables& tables) {
       alike += is_alike ? 1 : 0;
       judgement.because += (judgement.because.empty() ? "" : "; ") + example + " " + solver + ": " +
                            (over.one_basin ? "one minimum" : "different minima") + ", ";
-      judgement.because += std::isfinite(over.most) ? ShortNumber(over.fewest, 4) + " to " +
-                                                          ShortNumber(over.most, 4) + " iterations"
+      judgement.because += std::isfinite(over.most) ? NumberText(over.fewest) + " to " +
+                                                          NumberText(over.most) + " iterations"
                                                     : "not all runs come to a gap of 1e-6";
     }
   }
@@ -133,7 +132,7 @@ Experiment AndersonPaperStarts() {
   experiment.name = "starts";
   experiment.title = "Three starting curves";
   experiment.text =
-      "The three examples from a circle, from an ellipse with the data's principal axes, and from "
+      "The examples from a circle, from an ellipse with the data's principal axes, and from "
       "the circle with its control points moved at random (seeded) in a square of side 0.2.";
   experiment.run = &RunStarts;
   experiment.shown = [](const ExperimentTables& tables) {
@@ -145,12 +144,12 @@ Experiment AndersonPaperStarts() {
       {"the starting curve matters little", "its experiment with three of them",
        "per example and method: the polished E from all three starts agree to 1e-3, all runs come "
        "to a gap of 1e-6, and the counts of iterations to it lie within a factor of 2. Holds where "
-       "all six are so, in part where some are, else does not hold",
+       "all are so, in part where some are, else does not hold",
        &JudgeStarts}};
   experiment.figures = {{"starts_errors",
                          "E at the foot points against iterations from the three starts; iteration "
                          "0 is left out.",
-                         1, &ErrorsFromStarts}};
+                         2, &ErrorsFromStarts}};
   return experiment;
 }
 
