@@ -26,7 +26,7 @@ Reproduction AcceleratedGim() {
       AcceleratedGimFigure1(),  AcceleratedGimOutlines(),        AcceleratedGimThirtyIterations(),
       AcceleratedGimSize(),     AcceleratedGimOrder(),           AcceleratedGimSpectrum(),
       AcceleratedGimOneCall(),  AcceleratedGimLargestResidual(), AcceleratedGimUnits(),
-      AcceleratedGimStopRule(), AcceleratedGimWhenToIterate()};
+      AcceleratedGimStopRule(), AcceleratedGimWhenToIterate(),   AcceleratedGimFigure6()};
   return reproduction;
 }
 

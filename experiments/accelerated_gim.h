@@ -11,6 +11,7 @@ Reproduction AcceleratedGim();
 
 // Its experiments, one file each, accelerated_gim_NAME.cc.
 Experiment AcceleratedGimFigure1();
+Experiment AcceleratedGimFigure6();
 Experiment AcceleratedGimOutlines();
 Experiment AcceleratedGimThirtyIterations();
 Experiment AcceleratedGimSize();

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "experiments/accelerated_gim.h"
+#include "experiments/anderson_paper.h"
 #include "experiments/atomic_file.h"
 #include "experiments/build_info.h"
 #include "experiments/reproduction_page.h"
@@ -119,7 +120,8 @@ const char* ToString(ClaimVerdict verdict) {
 }
 
 const std::vector<Reproduction>& Reproductions() {
-  static const auto& reproductions = *new std::vector<Reproduction>{AcceleratedGim()};
+  static const auto& reproductions =
+      *new std::vector<Reproduction>{AcceleratedGim(), AndersonPaper()};
   return reproductions;
 }
 

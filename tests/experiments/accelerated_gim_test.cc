@@ -34,7 +34,7 @@ ClaimVerdict Verdict(const Experiment& experiment, const ExperimentTables& table
 
 TEST(AcceleratedGim, ListsItsExperimentsWithDifferentNamesAndRules) {
   const Reproduction reproduction = AcceleratedGim();
-  EXPECT_EQ(reproduction.experiments.size(), 11U);
+  EXPECT_EQ(reproduction.experiments.size(), 12U);
   std::set<std::string> names;
   for (const Experiment& experiment : reproduction.experiments) {
     EXPECT_TRUE(names.insert(experiment.name).second);
@@ -272,17 +272,19 @@ TEST(AcceleratedGim, JudgesStopRulesInOtherUnits) {
 
 TEST(AcceleratedGim, ShowsWhatIsLeftOfTablesWithRowsTakenOut) {
   // Rows of one solver alone, in all columns that an experiment asks for.
-  CsvTable table(RunColumnsBehind({"offset", "rule", "points_per_control_point", "parameters",
-                                   "predicted_rate", "measured_rate", "factor", "reason", "setting",
-                                   "largest", "rms", "norm", "distance_to_direct"}));
+  CsvTable table(
+      RunColumnsBehind({"offset", "rule", "points_per_control_point", "parameters",
+                        "predicted_rate", "measured_rate", "factor", "reason", "setting", "largest",
+                        "rms", "norm", "distance_to_direct", "foot_energy", "length"}));
   Add({{"mode", "race"}, {"solver", "gim"}, {"rule", kPaperRule}, {"offset", "0"}}, &table);
   for (const Experiment& experiment : AcceleratedGim().experiments) {
     ExperimentTables tables = {{"", table}};
     for (const char* name : {"traces", "curves", "profiles", "rates"}) {
       tables[name] =
-          CsvTable({"problem", "mode", "solver", "iteration", "x", "y", "energy", "gradient_norm",
-                    "step_norm", "gap", "largest", "rms", "method", "point", "residual",
-                    "iterations", "first_factor", "last_factor", "order"});
+          CsvTable({"problem",    "mode",         "solver",        "iteration", "x",
+                    "y",          "energy",       "gradient_norm", "step_norm", "gap",
+                    "largest",    "rms",          "method",        "point",     "residual",
+                    "iterations", "first_factor", "last_factor",   "order",     "parameters"});
     }
     for (const SourceClaim& claim : experiment.claims) claim.judge(tables);
     for (const ExperimentFigure& figure : experiment.figures) figure.panels(tables);
@@ -318,6 +320,28 @@ TEST(AcceleratedGim, JudgesTheStopRuleThatMisleads) {
   EXPECT_EQ(Verdict(experiment, runs("7", "78", "0.9")), kDoesNotHold);
   EXPECT_EQ(Verdict(experiment, runs("7", "78", "60", 1)), kUndecided);
   EXPECT_EQ(Verdict(experiment, runs("7", "78", "nan")), kUndecided);
+}
+
+TEST(AcceleratedGim, JudgesFreeParameters) {
+  /// Fixed parameters: E 1 at t and 0.5 at the feet, length 10.
+  const auto runs = [](const char* energy, const char* foot_energy, const char* length) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable(
+        {"parameters", "solver", "status", "iterations", "energy", "foot_energy", "length"});
+    tables["curves"] = CsvTable({"parameters", "solver", "x", "y"});
+    table.AddRow({"fixed", "lbfgs", "", "", "1", "0.5", "10"});
+    table.AddRow({"free", "lbfgs", "", "", energy, foot_energy, length});
+    return tables;
+  };
+  const Experiment experiment = AcceleratedGimFigure6();
+  EXPECT_EQ(Verdict(experiment, runs("0.45", "0.45", "11")), kHolds);
+  EXPECT_EQ(Verdict(experiment, runs("0.45", "0.45", "11.1")), kInPart);
+  EXPECT_EQ(Verdict(experiment, runs("0.95", "0.45", "10")), kInPart);
+  EXPECT_EQ(Verdict(experiment, runs("0.5", "0.46", "10")), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, runs("0.5", "nan", "10")), kUndecided);
+  ExperimentTables one_row = runs("0.45", "0.45", "10");
+  one_row[""] = one_row[""].Where("parameters", "free");
+  EXPECT_EQ(Verdict(experiment, one_row), kUndecided);
 }
 
 TEST(AcceleratedGim, JudgesBounds) {

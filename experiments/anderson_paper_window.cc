@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "experiments/anderson_paper.h"
+#include "experiments/anderson_paper_judges.h"
+#include "experiments/anderson_paper_runs.h"
+#include "experiments/experiment_runs.h"
+
+namespace batten {
+namespace {
+
+constexpr int kMostWindow = 8;
+constexpr int kClaimed = 6;
+
+bool RunWindows(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
+  std::vector<std::string> columns = {"window"};
+  for (std::string& column : FreeRunColumns()) columns.push_back(std::move(column));
+  CsvTable& runs = (*tables)[""] = CsvTable(columns);
+  std::vector<PaperExample> examples;
+  if (!PaperExamples(&examples, error)) return false;
+  double done = 0.0;
+  for (const PaperExample& example : examples) {
+    const FreeCase on = {example.name, "circle",
+                         FreeFit(example.points, example.control_points, "circle")};
+    for (int window = 1; window <= kMostWindow; ++window) {
+      if (InterruptRequested()) return true;
+      const std::string text = std::to_string(window);
+      if (run.progress) {
+        run.progress(done / (kMostWindow * static_cast<double>(examples.size())),
+                     example.name + " window " + text);
+      }
+      done += 1.0;
+      CsvTable rows(FreeRunColumns());
+      RunFree(on, "anderson/window=" + text + ":pdm", FreeRaceSpec(), run.repetitions, &rows,
+              nullptr);
+      AddRowsBehind({text}, rows, &runs);
+    }
+  }
+  return true;
+}
+
+/// The fewest iterations to the gap over windows `first` to `last`; NaN: none comes so far. Of
+/// those alone that end in the basin of window 6; `num_others` counts the others.
+double Fewest(const CsvTable& on, int first, int last, int* num_others) {
+  const double basin = OnlyNumber(on.Where("window", std::to_string(kClaimed)), "polished_energy");
+  double fewest = std::numeric_limits<double>::quiet_NaN();
+  *num_others = 0;
+  for (int window = first; window <= last; ++window) {
+    const CsvTable row = on.Where("window", std::to_string(window));
+    if (!InOneBasin(OnlyNumber(row, "polished_energy"), basin)) {
+      ++*num_others;
+      continue;
+    }
+    const double count = OnlyNumber(row, "iterations_to_1e-6");
+    if (IsSooner(count, fewest)) fewest = count;
+  }
+  return fewest;
+}
+
+std::string Shown(double count) { return std::isnan(count) ? "-" : NumberText(count); }
+
+bool AllWindowsThere(const CsvTable& on) {
+  for (int window = 1; window <= kMostWindow; ++window) {
+    const CsvTable row = on.Where("window", std::to_string(window));
+    if (std::isnan(OnlyNumber(row, "polished_energy"))) return false;
+  }
+  return true;
+}
+
+Judgement JudgeWindow(const ExperimentTables& tables) {
+  constexpr double kHelps = 0.8;
+  Judgement judgement;
+  int compared = 0, useless = 0;
+  for (const std::string& example : PaperExampleNames()) {
+    const CsvTable on = tables.at("").Where("example", example);
+    if (!AllWindowsThere(on)) return Judgement();
+    int small_others = 0, large_others = 0;
+    const double small = Fewest(on, 1, kClaimed, &small_others);
+    const double large = Fewest(on, kClaimed + 1, kMostWindow, &large_others);
+    judgement.because += (judgement.because.empty() ? "" : "; ") + example + ": ";
+    const bool is_comparable =
+        large_others < kMostWindow - kClaimed && !(std::isnan(small) && std::isnan(large));
+    if (!is_comparable) {
+      judgement.because += "windows 7 and 8 end at other minima, or none comes so far";
+      continue;
+    }
+    ++compared;
+    useless += IsSooner(large, kHelps * small) ? 0 : 1;
+    judgement.because += Shown(large) + " against " + Shown(small);
+    if (small_others + large_others > 0) {
+      judgement.because +=
+          " (" + std::to_string(small_others + large_others) + " of 8 end at other minima)";
+    }
+  }
+  judgement.because = "fewest iterations to a gap of 1e-6 with windows 7 and 8 against 1 to 6, " +
+                      judgement.because;
+  if (compared > 0) judgement.verdict = VerdictOf(useless, compared);
+  return judgement;
+}
+
+std::vector<PlotPanel> AgainstWindow(const ExperimentTables& tables) {
+  std::vector<PlotPanel> panels;
+  const std::pair<const char*, const char*> drawn[] = {
+      {"iterations_to_1e-6", "iterations to a gap of 1e-6"},
+      {"seconds_to_1e-6", "seconds to a gap of 1e-6"},
+      {"polished_energy", "E at the foot points, polished"},
+      {"rejected", "share of rejected steps"}};
+  for (const auto& [column, label] : drawn) {
+    PlotPanel panel;
+    panel.title = "Anderson acceleration of PDM";
+    panel.x_label = "window";
+    panel.y_label = label;
+    panel.log_y = std::string(column) != "rejected";
+    int color = 0;
+    for (const std::string& example : PaperExampleNames()) {
+      const CsvTable rows = tables.at("").Where("example", example);
+      panel.series.push_back({example, rows.Numbers("window"), rows.Numbers(column),
+                              PlotSeries::Style::kLinePoints, color++});
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+}  // namespace
+
+Experiment AndersonPaperWindow() {
+  Experiment experiment;
+  experiment.name = "window";
+  experiment.title = "The window";
+  experiment.text =
+      "Anderson acceleration of PDM with the last 1 to 8 steps combined, on the examples, "
+      "from the circle.";
+  experiment.run = &RunWindows;
+  experiment.shown = [](const ExperimentTables& tables) {
+    return tables.at("").Select({"example", "window", "status", "iterations", "seconds",
+                                 "polished_energy", "iterations_to_1e-3", "iterations_to_1e-6",
+                                 "seconds_to_1e-6", "rejected"});
+  };
+  experiment.claims = {
+      {"a window above 6 does not help", "its text",
+       "over the examples where window 7 or 8 ends in the basin of window 6, and over the windows "
+       "that end there: holds where on all the fewest iterations to a gap of 1e-6 with 7 or 8 are "
+       "at least 0.8 of the fewest with 1 to 6, in part where on some, else does not hold",
+       &JudgeWindow}};
+  experiment.figures = {{"window_counts",
+                         "Iterations and time to 1e-6 above each run's own minimum, that minimum, "
+                         "and the share of rejected steps, against the window.",
+                         2, &AgainstWindow}};
+  return experiment;
+}
+
+}  // namespace batten
