@@ -162,6 +162,7 @@ std::vector<double> AndersonSolver::State() const {
     Append(image_differences_[k], &state);
     Append(move_differences_[k], &state);
   }
+  state.push_back(energy_);
   return state;
 }
 
@@ -177,6 +178,8 @@ void AndersonSolver::Restore(const std::vector<double>& state) {
     image_differences_[k] = Take(&next);
     move_differences_[k] = Take(&next);
   }
+  // Not that of Start, which may have moved its x.
+  energy_ = *next;
 }
 
 SolverEntry AndersonEntry() {
