@@ -58,9 +58,11 @@ std::optional<Outcome> AndersonSolver::DoStart(Eigen::VectorXd* x) {
   last_image_.resize(0);
   image_differences_.clear();
   move_differences_.clear();
-  if (std::optional<Outcome> outcome = map_->Start(objective(), context(), x)) return outcome;
-  const Status status = Evaluate(*x, &energy_, &gradient_);
+  Eigen::VectorXd start = *x;  // which the base may move
+  if (std::optional<Outcome> outcome = map_->Start(objective(), context(), &start)) return outcome;
+  const Status status = Evaluate(start, &energy_, &gradient_);
   if (status != Status::kOk) return Ended(status);
+  x->swap(start);
   return std::nullopt;
 }
 

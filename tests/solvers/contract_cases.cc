@@ -140,24 +140,24 @@ std::vector<ContractProblem> FreeProblems() {
   return {
       {"free, closed from a circle",
        [] {
-         return MakeFit(WithoutWeights(MakeNoisyLoop(60, 2, 301)), MakeFreeSpec(3, true, 12));
+         return MakeFit(WithoutWeights(MakeNoisyBean(60, 2, 301)), MakeFreeSpec(3, true, 12));
        }},
       {"free, open from the data, ends held",
        [] {
          FitSpec spec = MakeFreeSpec(3, false, 9, "data");
          spec.hold_ends = true;
-         return MakeFit(WithoutWeights(MakeNoisyLoop(40, 2, 302)), spec);
+         return MakeFit(WithoutWeights(MakeNoisyBean(40, 2, 302)), spec);
        }},
       {"free, three dimensions from an ellipse, weighted",
-       [] { return MakeFit(MakeNoisyLoop(50, 3, 303), MakeFreeSpec(2, true, 13, "ellipse")); }},
+       [] { return MakeFit(MakeNoisyBean(50, 3, 303), MakeFreeSpec(2, true, 13, "ellipse")); }},
       {"free, open in three dimensions, with fixed parameters beside",
        [] {
          return MakeFit(
-             MakeNoisyLoop(40, 3, 304),
+             MakeNoisyBean(40, 3, 304),
              MakeFreeSpec(4, false, 10, "data", "free_parameter,interpolation/weight=0.25"));
        }},
       {"free, closed with fewer control points than the band is wide",
-       [] { return MakeFit(WithoutWeights(MakeNoisyLoop(30, 2, 305)), MakeFreeSpec(3, true, 5)); }},
+       [] { return MakeFit(WithoutWeights(MakeNoisyBean(30, 2, 305)), MakeFreeSpec(3, true, 5)); }},
   };
 }
 

@@ -7,33 +7,31 @@ namespace batten {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-/// Where E ends a run because its differences are rounding, |g|^2 / (4 l) is about eps E, and the
-/// gradient has half the digits; 100 for the spread of the eigenvalues l.
-const double kHalfTheDigits = 100.0 * std::sqrt(kEps);
 
-/// Methods whose way to the minimum takes more iterations than a test has, or, as ceres_lm's, is
-/// bound to the spans of the start.
-bool OnlyLowersTheEnergy(const std::string& registered) {
-  for (const char* slow : {"gi", "pdm", "anderson", "ceres_lm"}) {
-    if (registered == slow) return true;
+/// Methods that come near their minimum faster than linearly, or linearly at a good rate: points
+/// slide along the curve, which takes the others thousands of iterations.
+bool ReachesTheMinimum(const std::string& registered) {
+  for (const char* fast : {"foot_newton", "newton", "lm_schur", "varpro", "sdm"}) {
+    if (registered == fast) return true;
   }
   return false;
 }
 
-void ExpectEndsLower(const SupportedProblem& row, bool at_a_minimum) {
+void ExpectEndsLower(const SupportedProblem& row, bool is_fast) {
   SolverTrial trial(*row.problem, row.solver, {3000});
   const double start = trial.context.Energy(Objective(row.problem.get(), nullptr).start());
-  EXPECT_LT(trial.context.Energy(trial.x), start);
+  // Noise is a small part of how far the start is off; 0.2 leaves room for what ends early.
+  EXPECT_LT(trial.context.Energy(trial.x), 0.2 * start);
   EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << trial.outcome.message;
-  if (!at_a_minimum) return;
+  EXPECT_TRUE(IsSuccess(trial.outcome.reason) || !is_fast)
+      << ToString(trial.outcome.reason) << ": " << trial.outcome.message << ", iterations "
+      << trial.iterations();
+  if (!IsSuccess(trial.outcome.reason)) return;
   // What is claimed is seen by an objective that the solver does not know.
   const double first = trial.context.gradient_norms().front();
   const double last = trial.context.GradientNorm(trial.x);
   const double floor = Objective(row.problem.get(), nullptr).GradientRoundingFloor(trial.x);
-  const double bound = IsSuccess(trial.outcome.reason) ? 1e-10 : kHalfTheDigits;
-  EXPECT_LE(last, std::max(bound * first, floor))
-      << ToString(trial.outcome.reason) << ": " << trial.outcome.message << ", iterations "
-      << trial.iterations();
+  EXPECT_LE(last, std::max(1e-10 * first, floor));
 }
 
 TEST_P(EverySolver, EndsFreeFitsWhereTheJointGradientIsSmall) {
@@ -42,7 +40,7 @@ TEST_P(EverySolver, EndsFreeFitsWhereTheJointGradientIsSmall) {
     if (!row.problem->curve_fit()->has_free_parameters()) continue;
     SCOPED_TRACE(row.name);
     ++num_runs;
-    ExpectEndsLower(row, !OnlyLowersTheEnergy(GetParam()));
+    ExpectEndsLower(row, ReachesTheMinimum(GetParam()));
   }
   if (needs_free_parameters()) {
     EXPECT_EQ(num_runs, static_cast<int>(FreeProblems().size()));
@@ -93,7 +91,8 @@ TEST_P(EverySolver, RunsOrRefusesLossesOnFreeParameters) {
                             "free_parameter,interpolation/loss=huber/loss_scale=0.02",
                             "free_parameter,free_parameter/weight=0.5/loss=cauchy"}) {
     SCOPED_TRACE(terms);
-    const auto problem = MakeFit(MakeNoisyLoop(50, 2, 1), MakeFreeSpec(3, true, 12, "circle", terms));
+    const auto problem =
+        MakeFit(MakeNoisyLoop(50, 2, 1), MakeFreeSpec(3, true, 12, "circle", terms));
     ExpectRunsOrRefuses(*problem, free_name());
     if (needs_free_parameters()) {
       EXPECT_THAT(WhyUnsupported(*problem, free_name()), ::testing::HasSubstr("without loss"));

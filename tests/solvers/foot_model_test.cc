@@ -201,8 +201,11 @@ TEST(FootModel, LeavesParametersAtAnEndThatTheyArePressedAgainst) {
   const auto problem = MakeFit(WithoutWeights(MakeNoisyLoop(40, 2, 460)), spec);
   Objective objective(problem.get(), nullptr);
   Eigen::VectorXd x = objective.start();
-  // Off the data, so that some want to go past an end, others to leave it; one is past it.
+  // Off the data, so that some want to go past an end, others to leave it; one is past it. The
+  // start's own ends are on the data, where rounding would decide.
   const Eigen::Index first = problem->ranges().front().size;
+  std::mt19937 random(20240803);
+  for (Eigen::Index k = 0; k < first; ++k) x[k] += RandomBetween(-0.02, 0.02, &random);
   for (const Eigen::Index i : {2, 20, 30, 38}) x[first + i] = i % 4 == 0 ? 0.0 : 1.0;
   for (const Eigen::Index i : {1, 10, 35}) x[first + i] = i % 2 == 0 ? 1.0 : 0.0;
   x[first + 15] = 1.25;
