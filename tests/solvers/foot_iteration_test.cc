@@ -85,8 +85,7 @@ TEST(SdmModel, IsTheSquaredDistanceToSecondOrderWhereADataPointMovesOnTheConvexS
       const auto problem = OnePointOffTheCurve(i, distance);
       Objective objective(problem.get(), nullptr);
       const Eigen::VectorXd v = Translation(*problem);
-      EXPECT_NEAR(
-          ErrorOrder(&objective, FootModelKind::kCurvature, problem->start(), v), 3.0, 0.1)
+      EXPECT_NEAR(ErrorOrder(&objective, FootModelKind::kCurvature, problem->start(), v), 3.0, 0.1)
           << i;
     }
   }
@@ -99,8 +98,7 @@ TEST(SdmModel, IsClampedOnTheConcaveSideWhereNewtonsIsNot) {
     const Eigen::VectorXd v = Translation(*problem);
     EXPECT_NEAR(ErrorOrder(&objective, FootModelKind::kCurvature, problem->start(), v), 2.0, 0.1)
         << i;
-    EXPECT_NEAR(ErrorOrder(&objective, FootModelKind::kNewton, problem->start(), v), 3.0, 0.1)
-        << i;
+    EXPECT_NEAR(ErrorOrder(&objective, FootModelKind::kNewton, problem->start(), v), 3.0, 0.1) << i;
     // Clamped it is the squared distance from the tangent, which is above that from the curve.
     FootModel model(*objective.free_view(), 1);
     ASSERT_TRUE(model.Sum(problem->start(), FootModelKind::kCurvature, 0.0));
@@ -132,7 +130,7 @@ TEST(NewtonModel, IsTheEnergyAtTheFeetToSecondOrderInTheControlPoints) {
 TEST(Tdm, UndampedStepsAsGaussAndNewtonWithParametersEliminated) {
   for (const int dimension : {2, 3}) {
     const auto problem =
-        MakeFit(MakeNoisyBean(60, dimension, 503), MakeFreeSpec(3, true, 8, "ellipse"));
+        MakeFit(MakeNoisyBean(60, dimension, 503), MakeFreeSpec(3, true, 5, "ellipse"));
     TestContext context(*problem);
     Objective objective(problem.get(), &context);
     const auto solver = MakeSolver("tdm/damping=0/search=none");
@@ -145,9 +143,9 @@ TEST(Tdm, UndampedStepsAsGaussAndNewtonWithParametersEliminated) {
     const Eigen::VectorXd expected = dense.Step(FootModelKind::kTangent, 0.0).head(size);
     const Eigen::MatrixXd reduced = dense.Reduce(FootModelKind::kTangent, 0.0).half_hessian;
     const Eigen::VectorXd sizes = reduced.jacobiSvd().singularValues();
-    // A few roundings times the condition, which makes 1e-10 where points hardly slide.
+    // tdm keeps a damping of 64 roundings; few control points hold the points, which makes 1e-10.
     const double condition = sizes[0] / sizes[size - 1];
-    ASSERT_LT(256 * kEpsilon * condition, 1e-10);
+    ASSERT_LT(64 * kEpsilon * condition, 1e-10);
     EXPECT_LT((image.head(size) - x.head(size) - expected).norm(), 1e-10 * expected.norm());
   }
 }
@@ -168,7 +166,8 @@ TEST(FreeFits, HaveTheSameEnergiesAndIteratesWhenAllIsTurned) {
     const Eigen::MatrixXd turn = SomeTurn(dimension);
     DataSet data = MakeNoisyBean(50, dimension, 504);
     FitSpec spec = MakeFreeSpec(3, true, 9, "ellipse");
-    spec.start_points = MakeFit(data, spec)->curve_fit()->ControlPoints(MakeFit(data, spec)->start());
+    spec.start_points =
+        MakeFit(data, spec)->curve_fit()->ControlPoints(MakeFit(data, spec)->start());
     const auto plain = MakeFit(data, spec);
     data.points = Turned(data.points, turn);
     spec.start_points = Turned(spec.start_points, turn);
@@ -180,7 +179,8 @@ TEST(FreeFits, HaveTheSameEnergiesAndIteratesWhenAllIsTurned) {
       SolverTrial one(*plain, solver, {5});
       SolverTrial two(*turned, solver, {5});
       ASSERT_EQ(one.iterations(), two.iterations());
-      // A rounding grows by the condition of a step's equations, 1e3 at most, at each of a few steps.
+      // A rounding grows by the condition of a step's equations, 1e3 at most, at each of a few
+      // steps.
       constexpr double kNear = 1e-8;
       for (int k = 0; k <= one.iterations(); ++k) {
         const Eigen::VectorXd& x = one.context.iterates()[static_cast<std::size_t>(k)];

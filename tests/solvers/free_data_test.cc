@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-const char* const kFreeSolvers[] = {"foot_newton", "newton", "lm_schur",     "varpro", "tdm", "sdm",
-                                    "pdm",         "gi",     "anderson:pdm", "lbfgs"};
+const char* const kFreeSolvers[] = {"foot_newton", "newton", "lm_schur", "varpro",       "tdm",
+                                    "sdm",         "pdm",    "gi",       "anderson:pdm", "lbfgs"};
 
 std::vector<double> EnergiesOf(SolverTrial* trial) {
   std::vector<double> energies;
@@ -111,7 +111,9 @@ TEST(FreeFitsOfBadData, EndHonestlyWithRepeatedPoints) {
   ExpectEndsHonestly(*MakeFit(data, MakeFreeSpec(3, true, 9)));
   ExpectEndsHonestly(*MakeFit(data, MakeFreeSpec(3, false, 9, "data")));
   // All at one place.
-  ExpectEndsHonestly(*MakeFit(DataOf(Points::Constant(20, 2, 3.5)), MakeFreeSpec(3, true, 6)));
+  FitSpec spec = MakeFreeSpec(3, true, 6);
+  spec.parameters = Parameterization::kUniform;
+  ExpectEndsHonestly(*MakeFit(DataOf(Points::Constant(20, 2, 3.5)), spec));
 }
 
 TEST(FreeFitsOfBadData, EndHonestlyFarFromTheStart) {
