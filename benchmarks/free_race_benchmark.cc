@@ -124,12 +124,16 @@ void RunOnce(const Problem& problem, const std::string& solver, double most_seco
 }
 
 void Race(int starts, double most_seconds) {
-  const std::vector<std::string> solvers = {
-      "foot_newton",  "newton",      "lm_schur",      "varpro",
-      "sdm",          "tdm",         "anderson:sdm",  "anderson/window=3:pdm",
-      "anderson:pdm", "anderson/window=10:pdm", "lbfgs", "ceres_lbfgs", kLibLbfgs, "ceres_lm"};
+  const std::vector<std::string> solvers = {"foot_newton",  "newton",
+                                            "lm_schur",     "varpro",
+                                            "sdm",          "tdm",
+                                            "anderson:sdm", "anderson/window=3:pdm",
+                                            "anderson:pdm", "anderson/window=10:pdm",
+                                            "lbfgs",        "ceres_lbfgs",
+                                            kLibLbfgs,      "ceres_lm"};
   std::printf(
-      "| method | median ms to gap 1e-6 | 90 %% below, ms | reached | times foot_newton | geometric "
+      "| method | median ms to gap 1e-6 | 90 %% below, ms | reached | times foot_newton | "
+      "geometric "
       "mean of E at feet |\n|---|---|---|---|---|---|\n");
   double ours = 0.0;
   for (const std::string& solver : solvers) {
@@ -180,8 +184,9 @@ std::unique_ptr<Problem> Loop(int m, int n) {
 
 /// Sums, factorization and the parameters' steps: an iteration of lm_schur whose step is taken.
 void IterationPerPoint() {
-  std::printf("\n| points | control points | sums, ns per point | steps | factor | together |\n"
-              "|---|---|---|---|---|---|\n");
+  std::printf(
+      "\n| points | control points | sums, ns per point | steps | factor | together |\n"
+      "|---|---|---|---|---|---|\n");
   for (const int m : {1000, 10'000, 100'000, 1'000'000}) {
     const int n = std::max(20, m / 1000);
     const auto problem = Loop(m, n);
@@ -217,11 +222,12 @@ void IterationPerPoint() {
 int main(int argc, char** argv) {
   const int starts = argc > 1 ? std::atoi(argv[1]) : 20;
   const double seconds = argc > 2 ? std::atof(argv[2]) : 5.0;
-  std::printf("# Free parameters\n\nFour outlines of 80 to 120 points, 12 control points, %d "
-              "disturbed circles each, one thread. A run's time is that to a gap of 1e-6 to the "
-              "minimum of its own basin, found by polishing its end; runs that do not arrive in "
-              "%g s count as slowest.\n\n",
-              starts, seconds);
+  std::printf(
+      "# Free parameters\n\nFour outlines of 80 to 120 points, 12 control points, %d "
+      "disturbed circles each, one thread. A run's time is that to a gap of 1e-6 to the "
+      "minimum of its own basin, found by polishing its end; runs that do not arrive in "
+      "%g s count as slowest.\n\n",
+      starts, seconds);
   batten::Race(starts, seconds);
   std::printf("\nOne iteration of `lm_schur`, one core, cubic in the plane:\n");
   batten::IterationPerPoint();

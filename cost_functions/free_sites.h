@@ -1,6 +1,9 @@
 #ifndef BATTEN_COST_FUNCTIONS_FREE_SITES_H_
 #define BATTEN_COST_FUNCTIONS_FREE_SITES_H_
 
+#include <cmath>
+#include <limits>
+
 #include "splines/bspline_basis.h"
 
 namespace batten {
@@ -32,6 +35,17 @@ inline CurvePlace PlaceOnCurve(const BsplineBasis& basis, double t) {
   place.span = basis.FindSpan(place.t);
   place.moves = basis.periodic() || place.t == t;
   return place;
+}
+
+/// Where a method that knows what presses t leaves it on an open curve: a t that comes to an end is
+/// put a hair past it, where it does not count in the gradient. t inside, and any t of a closed
+/// curve, stays.
+inline double PastTheEnd(const BsplineBasis& basis, double t) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (basis.periodic()) return t;
+  if (t >= basis.domain_end()) return std::nextafter(basis.domain_end(), kFar);
+  if (t <= basis.domain_begin()) return std::nextafter(basis.domain_begin(), -kFar);
+  return t;
 }
 
 }  // namespace batten

@@ -58,9 +58,11 @@ std::optional<Outcome> AndersonSolver::DoStart(Eigen::VectorXd* x) {
   last_image_.resize(0);
   image_differences_.clear();
   move_differences_.clear();
-  if (std::optional<Outcome> outcome = map_->Start(objective(), context(), x)) return outcome;
-  const Status status = Evaluate(*x, &energy_, &gradient_);
+  Eigen::VectorXd start = *x;  // which the base may move
+  if (std::optional<Outcome> outcome = map_->Start(objective(), context(), &start)) return outcome;
+  const Status status = Evaluate(start, &energy_, &gradient_);
   if (status != Status::kOk) return Ended(status);
+  x->swap(start);
   return std::nullopt;
 }
 
@@ -162,6 +164,7 @@ std::vector<double> AndersonSolver::State() const {
     Append(image_differences_[k], &state);
     Append(move_differences_[k], &state);
   }
+  state.push_back(energy_);
   return state;
 }
 
@@ -177,6 +180,8 @@ void AndersonSolver::Restore(const std::vector<double>& state) {
     image_differences_[k] = Take(&next);
     move_differences_[k] = Take(&next);
   }
+  // Not that of Start, which may have moved its x.
+  energy_ = *next;
 }
 
 SolverEntry AndersonEntry() {

@@ -123,10 +123,12 @@ void CeresProblem::AddTerms() {
   AddGroups(free.groups());
   std::vector<int> begins;
   std::vector<int> sizes;
+  // Which variables a block has may depend on where the run starts, not the problem.
+  const Eigen::VectorXd start = objective_->Expand(state_);
   for (const Problem::TermInstance& term : problem.terms()) {
     for (int block = 0; block < term.family->size(); ++block) {
-      term.family->Bind(problem.start(), block, &begins, &sizes);
-      auto cost = free.Rewrite(term.family->MakeCeresCostFunction(problem.start(), block), &begins);
+      term.family->Bind(start, block, &begins, &sizes);
+      auto cost = free.Rewrite(term.family->MakeCeresCostFunction(start, block), &begins);
       AddBlock(std::move(cost), term.family->MakeCeresLoss(), begins);
     }
   }

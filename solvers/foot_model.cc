@@ -324,7 +324,7 @@ void FootModel::SortBySpan(const double* parameters) {
     const double t = basis_.Wrap(parameters[i]);
     span = basis_.FindSpanFrom(span, t);
     places_[i] = t;
-    moves_[i] = !view_.is_held(i) && (basis_.periodic() || t == parameters[i]) ? 1 : 0;
+    moves_[i] = view_.is_held(i) ? 0 : 1;
     span_of_[i] = span - basis_.first_span();
     ++span_begins_[static_cast<std::size_t>(span_of_[i]) + 1];
   }
@@ -454,6 +454,14 @@ void FootModel::ImproveFeet(int steps, Eigen::VectorXd* x) {
   WithKernel([&](const auto& kernel) {
     ForEachShare([&](int span) { kernel.ImproveSpan(span, steps, parameters); });
   });
+  LeaveEnds(parameters);
+}
+
+void FootModel::LeaveEnds(double* parameters) const {
+  if (basis_.periodic()) return;
+  for (int i = 0; i < view_.num_points(); ++i) {
+    if (!view_.is_held(i)) parameters[i] = PastTheEnd(basis_, parameters[i]);
+  }
 }
 
 double FootModel::Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step,
@@ -464,9 +472,7 @@ double FootModel::Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step,
   WithKernel([&](const auto& kernel) {
     ForEachShare([&](int span) { kernel.MoveSpan(span, step.data(), parameters); });
   });
-  if (!basis_.periodic()) {
-    for (int i = 0; i < view_.num_points(); ++i) parameters[i] = basis_.Wrap(parameters[i]);
-  }
+  LeaveEnds(parameters);
   // With D the damping, (H + D) s = -g of control points and parameters together, so that E falls
   // by -2 g's - s'H s = -g's + s'D s; g's is that of the reduced model less w along^2 / denominator
   // of every parameter.

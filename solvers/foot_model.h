@@ -32,6 +32,7 @@ class FootModel {
   bool Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping);
   double energy() const { return energy_; }
   FootModelKind kind() const { return kind_; }
+  double parameter_damping() const { return damping_; }
   /// What E is a difference of: sum_i w_i |Q_i|^2, for its rounding.
   double scale() const { return scale_; }
   /// Factors the half Hessian + damping * (its diagonal for a = 0). False if that is not positive
@@ -41,6 +42,8 @@ class FootModel {
   void Solve(Eigen::VectorXd* step) const;
   /// Half gradient in the control points, t eliminated.
   const Eigen::VectorXd& half_gradient() const { return half_gradient_; }
+  /// In the control points, t eliminated, without Factor's damping.
+  const NormalBand& half_hessian() const { return band_; }
   /// Moves each parameter among all variables `x` nearer to the foot of its point, by at most
   /// `steps` Newton steps within its span; never away from it. Leaves no sums behind.
   void ImproveFeet(int steps, Eigen::VectorXd* x);
@@ -68,6 +71,7 @@ class FootModel {
   template <typename Body>
   void ForEachShare(Body body);
   void AssembleBand();
+  void LeaveEnds(double* parameters) const;
   std::size_t SpanStride() const {
     return static_cast<std::size_t>(local_) * (local_ + 1) + static_cast<std::size_t>(order_);
   }
@@ -90,7 +94,7 @@ class FootModel {
   std::vector<double> curve_;         // per span: (p + 1) powers x d
   std::vector<int> span_of_;          // m, less the first span
   std::vector<double> places_;        // m: t in the domain
-  std::vector<char> moves_;           // m: 0 where t is held, or at or past an end
+  std::vector<char> moves_;           // m: 0 where t is held
   std::vector<int> order_of_points_;  // by span
   std::vector<int> span_begins_;      // into it
   std::vector<int> shares_;           // spans of each thread

@@ -20,11 +20,11 @@ SolverInfo FootNewtonSolver::ClassInfo() {
 std::optional<Outcome> FootNewtonSolver::DoStart(Eigen::VectorXd* x) {
   wait_ = 1;
   waited_ = 0;
-  Eigen::VectorXd all = objective()->Expand(*x);
-  const Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
-  if (status != Status::kOk) return Ended(status);
-  *x = objective()->problem().elimination().FreeVariables(all);
   return JointDescent::DoStart(x);
+}
+
+Status FootNewtonSolver::CompleteStart(const Eigen::VectorXd& x, Eigen::VectorXd* all) {
+  return ProjectParameters(objective(), context()->threads(), x, all);
 }
 
 bool FootNewtonSolver::Complete(Eigen::VectorXd* all) {
@@ -34,12 +34,17 @@ bool FootNewtonSolver::Complete(Eigen::VectorXd* all) {
 }
 
 std::optional<Outcome> FootNewtonSolver::DoStep(Eigen::VectorXd* x) {
-  if (std::optional<Outcome> outcome = JointDescent::DoStep(x)) return outcome;
-  if (wait_ > longest_wait_ || ++waited_ < wait_) return std::nullopt;
+  Eigen::VectorXd next = *x;
+  if (std::optional<Outcome> outcome = JointDescent::DoStep(&next)) return outcome;
+  if (wait_ > longest_wait_ || ++waited_ < wait_) {
+    x->swap(next);
+    return std::nullopt;
+  }
   waited_ = 0;
   const double before = energy();
-  Eigen::VectorXd all = objective()->Expand(*x);
-  Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
+  Eigen::VectorXd all = objective()->Expand(next);
+  Status status = ProjectParameters(objective(), context()->threads(), next, &all);
+  // Refused, the run ends at the iterate that was booked last.
   if (status == Status::kOk) status = GoTo(all, x);
   if (status != Status::kOk) return Ended(status);
   // It brings points that sit at a wrong minimum of their distance to the right one. Later it would

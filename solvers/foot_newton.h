@@ -19,6 +19,7 @@ class FootNewtonSolver final : public JointDescent {
 
  private:
   bool Complete(Eigen::VectorXd* all) override;
+  Status CompleteStart(const Eigen::VectorXd& x, Eigen::VectorXd* all) override;
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
 

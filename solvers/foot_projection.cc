@@ -16,7 +16,7 @@ Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorX
   Eigen::VectorXd feet = all->segment(sites.parameter_offset, view.num_points());
   ClosestPoint(curve).FindAll(sites.points, threads, &feet, nullptr);
   for (int i = 0; i < view.num_points(); ++i) {
-    if (!view.is_held(i)) (*all)[sites.parameter_offset + i] = feet[i];
+    if (!view.is_held(i)) (*all)[sites.parameter_offset + i] = PastTheEnd(*sites.basis, feet[i]);
   }
   return Status::kOk;
 }

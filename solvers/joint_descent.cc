@@ -18,21 +18,30 @@ constexpr int kMostTries = 40;
 std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   if (objective.free_view() != nullptr) return "";
   const CurveFit* fit = objective.problem().curve_fit();
-  if (fit == nullptr || !fit->has_free_parameters()) {
+  if (fit == nullptr) return name + " needs a curve with free parameters; use lbfgs";
+  if (!fit->has_free_parameters()) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
-  return name + " takes one free_parameter term without loss and terms that are affine; use lbfgs";
+  if (objective.problem().has_bounds()) return WhyNoBounds(objective, name);
+  return name +
+         " takes one free_parameter term without loss, terms that are affine, and no constraints "
+         "but parameters that are held; use lbfgs";
 }
 
 std::string JointDescent::WhyUnsupported(const Objective& objective) const {
   return WhyNoFreeView(objective, Info().name);
 }
 
-std::vector<double> JointDescent::State() const { return {damping_, growth_}; }
+std::vector<double> JointDescent::State() const {
+  return {damping_, growth_, here_->parameter_damping()};
+}
 
 void JointDescent::Restore(const std::vector<double>& state) {
   damping_ = state[0];
   growth_ = state[1];
+  // The run that was left stood where this one's start was given: no move of set-up belongs to it.
+  all_ = given_;
+  here_->Sum(all_, kind_, state[2]);
 }
 
 /// What rounding leaves of a difference of E.
@@ -51,19 +60,21 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   there_ = std::make_unique<FootModel>(view, context()->threads());
   damping_ = kFirstDamping;
   growth_ = 2.0;
-  all_ = objective()->Expand(*x);
-  if (!Complete(&all_)) return Ended(Status::kNonFinite);
-  *x = objective()->problem().elimination().FreeVariables(all_);
-  if (!objective()->Allow(Evaluation::kJacobian, x)) return Ended(Status::kStop);
-  if (!SumHere(kind_)) return Ended(Status::kNonFinite);
+  given_ = objective()->Expand(*x);
+  Eigen::VectorXd all = given_;
+  Status status = CompleteStart(*x, &all);
+  if (status == Status::kOk) status = GoTo(all, x);
+  if (status != Status::kOk) return Ended(status);
   return std::nullopt;
 }
 
 Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
+  const Eigen::VectorXd free = objective()->problem().elimination().FreeVariables(all);
+  if (!objective()->Allow(Evaluation::kJacobian, &free)) return Status::kStop;
   all_ = all;
-  *x = objective()->problem().elimination().FreeVariables(all_);
-  if (!objective()->Allow(Evaluation::kJacobian, x)) return Status::kStop;
-  return SumHere(kind_) ? Status::kOk : Status::kNonFinite;
+  if (!SumHere(kind_)) return Status::kNonFinite;
+  *x = free;
+  return Status::kOk;
 }
 
 bool JointDescent::Propose() {

@@ -21,6 +21,10 @@ class JointDescent : public Stepper {
   explicit JointDescent(FootModelKind kind) : kind_(kind) {}
   /// Called with all variables after each move, which it may go on with. False: no finite number.
   virtual bool Complete(Eigen::VectorXd* /*all*/) { return true; }
+  /// Called instead at the start, which has the free variables x.
+  virtual Status CompleteStart(const Eigen::VectorXd& /*x*/, Eigen::VectorXd* all) {
+    return Complete(all) ? Status::kOk : Status::kNonFinite;
+  }
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   FootModel* trial() { return there_.get(); }  ///< Free to be used in Complete.
@@ -40,6 +44,7 @@ class JointDescent : public Stepper {
   double growth_ = 2.0;
   double decrease_ = 0.0;  // foretold
   Eigen::VectorXd all_;    // all variables at x
+  Eigen::VectorXd given_;  // those that the start was given, before it moved them
   Eigen::VectorXd next_;
   Eigen::VectorXd step_;
   std::unique_ptr<FootModel> here_;

@@ -16,7 +16,7 @@ class Stepper : public Solver {
   /// One iteration from *x.
   std::optional<Outcome> Step(Eigen::VectorXd* x);
   /// What the next Step needs beside x, as numbers; set back by Restore after a Start at the same
-  /// x.
+  /// x, from which the next Step goes on, not from where Start has moved its copy.
   virtual std::vector<double> State() const { return {}; }
   virtual void Restore(const std::vector<double>& /*state*/) {}
 

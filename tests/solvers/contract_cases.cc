@@ -1,11 +1,16 @@
 #include "tests/solvers/contract_cases.h"
 
 #include <glog/logging.h>
+#include <gmock/gmock.h>
 
 #include <cstring>
 #include <utility>
 
 namespace batten {
+
+std::string FreeName(const std::string& registered) {
+  return registered == "anderson" ? "anderson:pdm" : SolverRegistry::Global().UsualName(registered);
+}
 
 std::unique_ptr<Solver> MakeSolver(const std::string& name_and_options) {
   NameSpec spec;
@@ -31,6 +36,30 @@ SolverTrial::SolverTrial(const Problem& problem, const std::string& solver,
 
 bool HasItsOwnLimit(const SolverTrial& trial) {
   return !trial.info.limit.empty() && trial.outcome.reason == StopReason::kNativeStop;
+}
+
+void ExpectOneSentenceWithAWayOut(const std::string& sentence, const std::string& solver) {
+  EXPECT_EQ(sentence.rfind(solver, 0), 0U) << sentence;
+  EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.find(". "), std::string::npos) << sentence;
+  EXPECT_NE(sentence.back(), '.') << sentence;
+  EXPECT_THAT(sentence, ::testing::ContainsRegex("use |needs [0-9]+ |hold |not both")) << sentence;
+}
+
+void ExpectRunsOrRefuses(const Problem& problem, const std::string& solver, bool compile) {
+  const std::string why = WhyUnsupported(problem, solver, compile);
+  if (!why.empty()) {
+    ExpectOneSentenceWithAWayOut(why, solver);
+    return;
+  }
+  SolverTrial trial(problem, solver, {}, compile);
+  EXPECT_TRUE(trial.x.allFinite());
+  EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << trial.outcome.message;
+  Objective objective(&problem, nullptr, {compile});
+  double before = 0.0, after = 0.0;
+  ASSERT_EQ(objective.Energy(objective.start(), &before), Status::kOk);
+  ASSERT_EQ(objective.Energy(trial.x, &after), Status::kOk);
+  EXPECT_LT(after, before);
 }
 
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -105,6 +134,44 @@ std::vector<ContractProblem> TwoProblems() {
   return {{"weighted closed curve",
            [] { return MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17)); }},
           InterpolationProblems()[5]};
+}
+
+std::vector<ContractProblem> FreeProblems() {
+  return {
+      {"free, closed from a circle",
+       [] {
+         return MakeFit(WithoutWeights(MakeNoisyBean(60, 2, 301)), MakeFreeSpec(3, true, 12));
+       }},
+      {"free, open from the data, ends held",
+       [] {
+         FitSpec spec = MakeFreeSpec(3, false, 9, "data");
+         spec.hold_ends = true;
+         return MakeFit(WithoutWeights(MakeNoisyBean(40, 2, 302)), spec);
+       }},
+      {"free, three dimensions from an ellipse, weighted",
+       [] { return MakeFit(MakeNoisyBean(50, 3, 303), MakeFreeSpec(2, true, 13, "ellipse")); }},
+      {"free, open in three dimensions, with fixed parameters beside",
+       [] {
+         return MakeFit(
+             MakeNoisyBean(40, 3, 304),
+             MakeFreeSpec(4, false, 10, "data", "free_parameter,interpolation/weight=0.25"));
+       }},
+      {"free, closed with fewer control points than the band is wide",
+       [] { return MakeFit(WithoutWeights(MakeNoisyBean(30, 2, 305)), MakeFreeSpec(3, true, 5)); }},
+  };
+}
+
+std::vector<SupportedProblem> SupportedProblems(const std::string& registered) {
+  std::vector<SupportedProblem> supported;
+  const auto add = [&supported](const std::string& solver, const ContractProblem& row) {
+    std::unique_ptr<Problem> problem = row.make();
+    if (!WhyUnsupported(*problem, solver).empty()) return;
+    supported.push_back({solver, row.name, std::move(problem)});
+  };
+  const std::string usual = SolverRegistry::Global().UsualName(registered);
+  for (const ContractProblem& row : TwoProblems()) add(usual, row);
+  for (const ContractProblem& row : FreeProblems()) add(FreeName(registered), row);
+  return supported;
 }
 
 }  // namespace batten

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,11 +19,21 @@
 
 namespace batten {
 
+/// A solver as users would write it for problems with free parameters.
+std::string FreeName(const std::string& registered);
+
 /// The suite that runs on every registered solver; its tests stand in several contract_*_test.cc.
 class EverySolver : public ::testing::TestWithParam<std::string> {
  protected:
   /// As users would write it; what wraps a solver gets one.
   std::string name() const { return SolverRegistry::Global().UsualName(GetParam()); }
+  /// The same for problems with free parameters, where another base is usual.
+  std::string free_name() const { return FreeName(GetParam()); }
+  /// It takes no problem but those with free parameters.
+  bool needs_free_parameters() const {
+    const std::vector<std::string> needs = SolverRegistry::Global().Find(GetParam())->needs;
+    return std::find(needs.begin(), needs.end(), "free parameters") != needs.end();
+  }
 };
 
 std::unique_ptr<Solver> MakeSolver(const std::string& name_and_options);
@@ -45,6 +56,11 @@ struct SolverTrial {
 /// The run ended where SolverInfo::limit says, which is not the minimum of E.
 bool HasItsOwnLimit(const SolverTrial& trial);
 
+void ExpectOneSentenceWithAWayOut(const std::string& sentence, const std::string& solver);
+
+/// A solver takes a problem and lowers E, or says why it does not.
+void ExpectRunsOrRefuses(const Problem& problem, const std::string& solver, bool compile = true);
+
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
 struct ContractProblem {
@@ -62,6 +78,19 @@ std::vector<ContractProblem> InterpolationProblems();
 
 /// A weighted fit and one through all points: each solver takes one of them at least.
 std::vector<ContractProblem> TwoProblems();
+
+/// Parameters are variables: closed and open, 2-D and 3-D, weighted, few control points, with ends
+/// held and with another term.
+std::vector<ContractProblem> FreeProblems();
+
+struct SupportedProblem {
+  std::string solver;  // as it is written for this problem
+  std::string name;
+  std::unique_ptr<Problem> problem;
+};
+
+/// Those of TwoProblems() and FreeProblems() that a registered solver takes.
+std::vector<SupportedProblem> SupportedProblems(const std::string& registered);
 
 }  // namespace batten
 

@@ -13,31 +13,6 @@ std::unique_ptr<Problem> ClosedFit() {
   return MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17));
 }
 
-void ExpectOneSentenceWithAWayOut(const std::string& sentence, const std::string& solver) {
-  EXPECT_EQ(sentence.rfind(solver, 0), 0U) << sentence;
-  EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
-  EXPECT_EQ(sentence.find(". "), std::string::npos) << sentence;
-  EXPECT_NE(sentence.back(), '.') << sentence;
-  EXPECT_THAT(sentence, ::testing::ContainsRegex("use |needs [0-9]+ |hold |not both")) << sentence;
-}
-
-/// A solver takes a problem and lowers E, or says why it does not.
-void ExpectRunsOrRefuses(const Problem& problem, const std::string& solver, bool compile = true) {
-  const std::string why = WhyUnsupported(problem, solver, compile);
-  if (!why.empty()) {
-    ExpectOneSentenceWithAWayOut(why, solver);
-    return;
-  }
-  SolverTrial trial(problem, solver, {}, compile);
-  EXPECT_TRUE(trial.x.allFinite());
-  EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << trial.outcome.message;
-  Objective objective(&problem, nullptr, {compile});
-  double before = 0.0, after = 0.0;
-  ASSERT_EQ(objective.Energy(objective.start(), &before), Status::kOk);
-  ASSERT_EQ(objective.Energy(trial.x, &after), Status::kOk);
-  EXPECT_LT(after, before);
-}
-
 TEST_P(EverySolver, RunsOrRefusesLosses) {
   for (const char* terms : {"interpolation/loss=cauchy/loss_scale=0.01",
                             "interpolation,interpolation/loss=huber/loss_scale=0.02"}) {

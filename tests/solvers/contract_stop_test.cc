@@ -53,33 +53,35 @@ class StoppingContext final : public RunContext, public EvaluationMonitor {
 
 constexpr int kNever = std::numeric_limits<int>::max();
 
+/// Of the free variables.
+Eigen::VectorXd Start(const Problem& problem) { return Objective(&problem, nullptr).start(); }
+
 Outcome MinimizeFrom(const Problem& problem, const std::string& solver, StoppingContext* context,
                      Eigen::VectorXd* x) {
   Objective objective(&problem, context);
   return MakeSolver(solver)->Minimize(&objective, context, x);
 }
 
-/// Calls test(problem) for those of TwoProblems() that the solver takes: one at least.
+/// Calls test(problem, solver) for the problems that the solver takes: one at least.
 template <typename Test>
-void ForSupported(const std::string& solver, Test test) {
-  int num_supported = 0;
-  for (const ContractProblem& row : TwoProblems()) {
-    const auto problem = row.make();
-    if (!WhyUnsupported(*problem, solver).empty()) continue;
+void ForSupported(const std::string& registered, Test test) {
+  const std::vector<SupportedProblem> supported = SupportedProblems(registered);
+  EXPECT_FALSE(supported.empty());
+  for (const SupportedProblem& row : supported) {
     SCOPED_TRACE(row.name);
-    ++num_supported;
-    test(*problem);
+    test(*row.problem, row.solver);
   }
-  EXPECT_GT(num_supported, 0);
 }
 
+bool IsFree(const Problem& problem) { return problem.curve_fit()->has_free_parameters(); }
+
 TEST_P(EverySolver, LeavesAtTheIterateThatSaysStop) {
-  ForSupported(name(), [this](const Problem& problem) {
+  ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     for (const int last : {0, 1, 3}) {
       SCOPED_TRACE(last);
       StoppingContext context(last, kNever);
-      Eigen::VectorXd x = problem.start();
-      const Outcome outcome = MinimizeFrom(problem, name(), &context, &x);
+      Eigen::VectorXd x = Start(problem);
+      const Outcome outcome = MinimizeFrom(problem, solver, &context, &x);
       const int num_iterates = static_cast<int>(context.iterates().size());
       EXPECT_LE(num_iterates, last + 1);
       ASSERT_GE(num_iterates, 1);
@@ -97,57 +99,70 @@ TEST_P(EverySolver, LeavesAtTheIterateThatSaysStop) {
 }
 
 TEST_P(EverySolver, BooksItsStartFirst) {
-  ForSupported(name(), [this](const Problem& problem) {
+  ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     StoppingContext context(0, kNever);
-    Eigen::VectorXd x = problem.start();
-    MinimizeFrom(problem, name(), &context, &x);
-    EXPECT_TRUE(SameBits(context.iterates().front(), problem.start()));
-    EXPECT_TRUE(SameBits(x, problem.start()));
+    const Eigen::VectorXd start = Start(problem);
+    Eigen::VectorXd x = start;
+    MinimizeFrom(problem, solver, &context, &x);
+    EXPECT_TRUE(SameBits(x, context.iterates().front()));
+    if (IsFree(problem)) {
+      // Set-up may look for feet, or for the control points that go with the parameters.
+      TestContext judge(problem);
+      EXPECT_LE(judge.Energy(x), judge.Energy(start) * (1.0 + 64 * kEps));
+    } else {
+      EXPECT_TRUE(SameBits(x, start));
+    }
   });
 }
 
 TEST_P(EverySolver, LeavesAtTheEvaluationThatIsRefused) {
-  ForSupported(name(), [this](const Problem& problem) {
+  ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     StoppingContext all(20, kNever);
-    Eigen::VectorXd x = problem.start();
-    MinimizeFrom(problem, name(), &all, &x);
+    const Eigen::VectorXd start = Start(problem);
+    Eigen::VectorXd x = start;
+    MinimizeFrom(problem, solver, &all, &x);
     for (int allowed = 0; allowed < all.num_evaluations(); ++allowed) {
       SCOPED_TRACE(allowed);
       StoppingContext context(kNever, allowed);
-      x = problem.start();
-      const Outcome outcome = MinimizeFrom(problem, name(), &context, &x);
+      x = start;
+      const Outcome outcome = MinimizeFrom(problem, solver, &context, &x);
       ASSERT_TRUE(context.stopped());
       EXPECT_EQ(outcome.reason, StopReason::kInterrupted) << outcome.message;
       EXPECT_EQ(context.asked_after_stop(), 0);
       // Where a library keeps its last point to itself, it is booked on the way out.
       EXPECT_LE(context.booked_after_stop(), 1);
       const bool booked = !context.iterates().empty();
-      EXPECT_TRUE(SameBits(x, booked ? context.iterates().back() : problem.start()));
+      EXPECT_TRUE(SameBits(x, booked ? context.iterates().back() : start));
     }
   });
 }
 
 TEST_P(EverySolver, RefusesAStartThatIsNotFinite) {
-  ForSupported(name(), [this](const Problem& problem) {
+  ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-      StoppingContext context(kNever, kNever);
-      Eigen::VectorXd x = problem.start();
-      x[3] = bad;
-      const Outcome outcome = MinimizeFrom(problem, name(), &context, &x);
-      EXPECT_EQ(outcome.reason, StopReason::kNumericalFailure);
-      EXPECT_FALSE(outcome.message.empty());
-      EXPECT_EQ(context.num_evaluations(), 0);
-      EXPECT_TRUE(context.iterates().empty());
+      const Eigen::VectorXd start = Start(problem);
+      // A control point, and where they are free a parameter.
+      for (const Eigen::Index place : {Eigen::Index{3}, start.size() - 1}) {
+        StoppingContext context(kNever, kNever);
+        Eigen::VectorXd x = start;
+        x[place] = bad;
+        const Outcome outcome = MinimizeFrom(problem, solver, &context, &x);
+        EXPECT_EQ(outcome.reason, StopReason::kNumericalFailure);
+        EXPECT_FALSE(outcome.message.empty());
+        EXPECT_EQ(context.num_evaluations(), 0);
+        EXPECT_TRUE(context.iterates().empty());
+      }
     }
   });
 }
 
 TEST_P(EverySolver, SolvesOrFailsFromAStartWhoseSquareOverflows) {
-  ForSupported(name(), [this](const Problem& problem) {
+  ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     TestContext context(problem);
     Objective objective(&problem, &context);
-    Eigen::VectorXd x = Eigen::VectorXd::Constant(problem.num_variables(), 1e200);
-    const Outcome outcome = MakeSolver(name())->Minimize(&objective, &context, &x);
+    Eigen::VectorXd x = Start(problem);
+    x.head(problem.ranges().front().size).setConstant(1e200);
+    const Outcome outcome = MakeSolver(solver)->Minimize(&objective, &context, &x);
     if (outcome.reason == StopReason::kSolved) {
       EXPECT_TRUE(x.allFinite());
     } else {
@@ -157,13 +172,14 @@ TEST_P(EverySolver, SolvesOrFailsFromAStartWhoseSquareOverflows) {
 }
 
 TEST_P(EverySolver, StaysAtTheMinimum) {
-  ForSupported(name(), [this](const Problem& problem) {
+  ForSupported(GetParam(), [this](const Problem& problem, const std::string& solver) {
+    if (IsFree(problem)) return;  // contract_free_test.cc
     const DenseFit dense(problem);
     // Judged: the first iterate already is at the rounding floor.
     TestContext judge(problem);
     Objective judged(&problem, &judge);
     Eigen::VectorXd x = dense.solution_x();
-    const Outcome outcome = MakeSolver(name())->Minimize(&judged, &judge, &x);
+    const Outcome outcome = MakeSolver(solver)->Minimize(&judged, &judge, &x);
     EXPECT_TRUE(IsSuccess(outcome.reason)) << ToString(outcome.reason);
     EXPECT_LE(judge.iterates().size(), 2U);
     if (!SolverRegistry::Global().Find(GetParam())->limit.empty()) return;
@@ -171,7 +187,7 @@ TEST_P(EverySolver, StaysAtTheMinimum) {
     // moves A P by this much.
     StoppingContext context(200, kNever);
     x = dense.solution_x();
-    MinimizeFrom(problem, name(), &context, &x);
+    MinimizeFrom(problem, solver, &context, &x);
     const double rounding = 64 * kEps * dense.a.norm() * dense.condition();
     for (const Eigen::VectorXd& iterate : context.iterates()) {
       ASSERT_LT(std::sqrt(dense.Gap(iterate)), rounding);
@@ -182,16 +198,24 @@ TEST_P(EverySolver, StaysAtTheMinimum) {
 TEST_P(EverySolver, TakesAGradientThatIsExactlyZero) {
   DataSet data;
   data.points = Points::Constant(12, 2, 3.5);
-  FitSpec spec = MakeSpec(3, false, 12);
-  spec.parameters = Parameterization::kUniform;
-  const auto problem = MakeFit(data, spec);
-  ASSERT_EQ(WhyUnsupported(*problem, name()), "");
-  StoppingContext context(50, kNever);
-  Eigen::VectorXd x = problem->start();
-  ASSERT_TRUE(x.isZero(0.0));
-  const Outcome outcome = MinimizeFrom(*problem, name(), &context, &x);
-  EXPECT_NE(outcome.reason, StopReason::kNumericalFailure) << outcome.message;
-  EXPECT_TRUE(x.isZero(0.0));
+  int num_supported = 0;
+  for (const bool is_free : {false, true}) {
+    FitSpec spec = is_free ? MakeFreeSpec(3, false, 12, "data") : MakeSpec(3, false, 12);
+    spec.parameters = Parameterization::kUniform;
+    const auto problem = MakeFit(data, spec);
+    const std::string solver = is_free ? free_name() : name();
+    if (!WhyUnsupported(*problem, solver).empty()) continue;
+    ++num_supported;
+    StoppingContext context(50, kNever);
+    Eigen::VectorXd x = problem->start();
+    const Eigen::Index size = problem->ranges().front().size;
+    ASSERT_TRUE(x.head(size).isZero(0.0));
+    const Outcome outcome = MinimizeFrom(*problem, solver, &context, &x);
+    EXPECT_NE(outcome.reason, StopReason::kNumericalFailure) << outcome.message;
+    EXPECT_TRUE(x.head(size).isZero(0.0));
+    EXPECT_TRUE(x.allFinite());
+  }
+  EXPECT_GT(num_supported, 0);
 }
 
 }  // namespace

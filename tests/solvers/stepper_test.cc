@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "problems/test_functions.h"
 #include "tests/solvers/circulant_fit.h"
 #include "tests/solvers/contract_cases.h"
@@ -19,6 +21,13 @@ class SteppedRun {
         x_(x) {
     EXPECT_EQ(solver_->WhyUnsupported(objective_), "");
     EXPECT_FALSE(stepper()->Start(&objective_, &context_, &x_).has_value());
+  }
+  /// Taken up at x, where another run with this state was left.
+  SteppedRun(const Problem& problem, const std::string& name, const Eigen::VectorXd& x,
+             const std::vector<double>& state)
+      : SteppedRun(problem, name, x) {
+    stepper()->Restore(state);
+    x_ = x;
   }
   Stepper* stepper() { return dynamic_cast<Stepper*>(solver_.get()); }
   const Eigen::VectorXd& x() const { return x_; }
@@ -41,22 +50,44 @@ std::vector<std::string> StepperNames() {
   }
   names.emplace_back("lspia/step=cauchy");
   names.emplace_back("lspia/step=barzilai_borwein");
+  names.emplace_back("anderson:pdm");
   return names;
 }
+
+/// The problems of these tests that a stepper takes: one at least.
+std::vector<std::unique_ptr<Problem>> ProblemsFor(const std::string& name) {
+  std::vector<std::unique_ptr<Problem>> problems;
+  problems.push_back(MakeCirculantFit(30, 1));
+  problems.push_back(InterpolationProblems()[5].make());
+  for (const ContractProblem& row : FreeProblems()) problems.push_back(row.make());
+  const auto is_unsupported = [&name](const std::unique_ptr<Problem>& problem) {
+    return !WhyUnsupported(*problem, name).empty();
+  };
+  problems.erase(std::remove_if(problems.begin(), problems.end(), is_unsupported), problems.end());
+  CHECK(!problems.empty()) << name;
+  return problems;
+}
+
+std::unique_ptr<Problem> FirstProblemFor(const std::string& name) {
+  std::vector<std::unique_ptr<Problem>> problems = ProblemsFor(name);
+  return std::move(problems.front());
+}
+
+Eigen::VectorXd Start(const Problem& problem) { return Objective(&problem, nullptr).start(); }
 
 class EveryStepper : public ::testing::TestWithParam<std::string> {};
 
 /// A run of `total` steps, and one that is left after `before` and taken up by another object.
 void ExpectResumes(const Problem& problem, const std::string& name, int before, int total) {
   SCOPED_TRACE(problem.name() + " left after " + std::to_string(before));
-  SteppedRun whole(problem, name, problem.start());
-  SteppedRun first(problem, name, problem.start());
+  SteppedRun whole(problem, name, Start(problem));
+  SteppedRun first(problem, name, Start(problem));
   for (int k = 0; k < before; ++k) {
-    ASSERT_TRUE(whole.Step());
-    ASSERT_TRUE(first.Step());
+    const bool goes_on = whole.Step();
+    ASSERT_EQ(first.Step(), goes_on);
+    if (!goes_on) return;
   }
-  SteppedRun second(problem, name, first.x());
-  second.stepper()->Restore(first.stepper()->State());
+  SteppedRun second(problem, name, first.x(), first.stepper()->State());
   for (int k = before; k < total; ++k) {
     const bool goes_on = whole.Step();
     ASSERT_EQ(second.Step(), goes_on);
@@ -66,22 +97,19 @@ void ExpectResumes(const Problem& problem, const std::string& name, int before, 
 }
 
 TEST_P(EveryStepper, GoesOnFromItsStateAsIfItHadNotBeenLeft) {
-  const auto problem = MakeCirculantFit(30, 1);
-  const auto clamped = InterpolationProblems()[5].make();
-  for (const int before : {0, 1, 4, 17}) {
-    ExpectResumes(*problem, GetParam(), before, 40);
-    ExpectResumes(*clamped, GetParam(), before, 40);
+  for (const auto& problem : ProblemsFor(GetParam())) {
+    for (const int before : {0, 1, 4, 17}) ExpectResumes(*problem, GetParam(), before, 40);
   }
 }
 
 TEST_P(EveryStepper, StepsAsInItsOwnLoop) {
-  const auto problem = MakeCirculantFit(30, 1);
+  const auto problem = FirstProblemFor(GetParam());
   TestContextOptions options;
   options.max_iterations = 12;
   options.gradient_tolerance = -1.0;
   options.stop_at_rounding_floor = false;
   const SolverTrial loop(*problem, GetParam(), options);
-  SteppedRun stepped(*problem, GetParam(), problem->start());
+  SteppedRun stepped(*problem, GetParam(), Start(*problem));
   for (const Eigen::VectorXd& x : loop.context.iterates()) {
     ASSERT_TRUE(SameBits(stepped.x(), x));
     stepped.Step();
@@ -89,12 +117,13 @@ TEST_P(EveryStepper, StepsAsInItsOwnLoop) {
 }
 
 TEST_P(EveryStepper, RunsInLockstepWithAnyOther) {
-  const auto problem = MakeCirculantFit(30, 1);
+  const auto problem = FirstProblemFor(GetParam());
   for (const std::string& other : StepperNames()) {
     SCOPED_TRACE(other);
-    SteppedRun alone(*problem, GetParam(), problem->start());
-    SteppedRun one(*problem, GetParam(), problem->start());
-    SteppedRun two(*problem, other, problem->start());
+    const auto its_problem = FirstProblemFor(other);
+    SteppedRun alone(*problem, GetParam(), Start(*problem));
+    SteppedRun one(*problem, GetParam(), Start(*problem));
+    SteppedRun two(*its_problem, other, Start(*its_problem));
     for (int k = 0; k < 15; ++k) {
       const bool goes_on = alone.Step();
       ASSERT_EQ(one.Step(), goes_on);
@@ -143,24 +172,27 @@ TEST(Stepper, LbfgsGoesOnFromItsStateWithoutCompilationOrWithALoss) {
 }
 
 TEST(Stepper, AMapLeavesItsArgumentAndIsTheStep) {
-  const auto problem = MakeCirculantFit(30, 1);
   for (const std::string& name : StepperNames()) {
     const std::unique_ptr<Solver> solver = MakeSolver(name);
     auto* map = dynamic_cast<FixedPoint*>(solver.get());
     if (map == nullptr) continue;
-    TestContext context(*problem);
-    Objective objective(problem.get(), &context);
-    Eigen::VectorXd x = problem->start(), image;
-    ASSERT_FALSE(map->Start(&objective, &context, &x).has_value());
-    ASSERT_EQ(map->Map(x, &image), Status::kOk);
-    EXPECT_TRUE(SameBits(x, problem->start()));
-    ASSERT_FALSE(map->Step(&x).has_value());
-    EXPECT_TRUE(SameBits(x, image)) << name;
+    for (const auto& problem : ProblemsFor(name)) {
+      TestContext context(*problem);
+      Objective objective(problem.get(), &context);
+      Eigen::VectorXd x = objective.start(), image;
+      ASSERT_FALSE(map->Start(&objective, &context, &x).has_value());
+      const Eigen::VectorXd start = x;
+      ASSERT_EQ(map->Map(x, &image), Status::kOk);
+      EXPECT_TRUE(SameBits(x, start));
+      ASSERT_FALSE(map->Step(&x).has_value());
+      EXPECT_TRUE(SameBits(x, image)) << name;
+    }
   }
 }
 
 TEST(Stepper, ARefusedStepLeavesThePointAlone) {
   const auto problem = MakeCirculantFit(30, 1);
+  // Where parameters are free: contract_stop_test.cc.
   for (const std::string& name : StepperNames()) {
     TestContextOptions options;
     options.max_energies = 0;

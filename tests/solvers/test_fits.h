@@ -27,6 +27,16 @@ inline FitSpec MakeSpec(int degree, bool closed, int control_points,
   return spec;
 }
 
+/// Of a fit whose parameters are variables.
+inline FitSpec MakeFreeSpec(int degree, bool closed, int control_points,
+                            const std::string& start = "circle",
+                            const std::string& terms = "free_parameter") {
+  FitSpec spec = MakeSpec(degree, closed, control_points, terms);
+  spec.parameter_kind = ParameterKind::kFree;
+  spec.start = start;
+  return spec;
+}
+
 /// A fit of points of data/, "animals/rhino_100.csv".
 inline std::unique_ptr<Problem> MakeFileFit(const std::string& path, FitSpec spec) {
   std::string error;
@@ -52,6 +62,30 @@ inline DataSet MakeNoisyLoop(int num_points, int dimension, unsigned seed) {
     for (int c = 0; c < dimension; ++c) {
       data.points(i, c) =
           3.0 * std::sin((c + 1) * angle + 0.7 * c) + std::cos(2.0 * angle + c) + noise(random);
+    }
+    (*data.weights)[i] = weight(random);
+  }
+  return data;
+}
+
+/// Points near a bean, which a circle grows into; from the third coordinate on waves. Noise of
+/// standard deviation 0.03, weights in [0.5, 2].
+inline DataSet MakeNoisyBean(int num_points, int dimension, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 0.03);
+  std::uniform_real_distribution<double> weight(0.5, 2.0);
+  DataSet data;
+  data.name = "noisy_bean";
+  data.points.resize(num_points, dimension);
+  data.weights = Eigen::VectorXd(num_points);
+  for (int i = 0; i < num_points; ++i) {
+    const double angle = 2.0 * M_PI * (i + 0.3) / num_points;
+    const double radius = 2.0 + 0.5 * std::cos(2.0 * angle + 0.4) + 0.3 * std::sin(3.0 * angle);
+    for (int c = 0; c < dimension; ++c) {
+      const double wave = c == 0   ? radius * std::cos(angle)
+                          : c == 1 ? 0.8 * radius * std::sin(angle)
+                                   : 0.5 * std::sin(c * angle);
+      data.points(i, c) = wave + noise(random);
     }
     (*data.weights)[i] = weight(random);
   }

@@ -1,0 +1,160 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+const char* const kFreeSolvers[] = {"foot_newton", "newton", "lm_schur", "varpro",       "tdm",
+                                    "sdm",         "pdm",    "gi",       "anderson:pdm", "lbfgs"};
+
+std::vector<double> EnergiesOf(SolverTrial* trial) {
+  std::vector<double> energies;
+  for (const Eigen::VectorXd& x : trial->context.iterates()) {
+    energies.push_back(trial->context.Energy(x));
+  }
+  return energies;
+}
+
+std::unique_ptr<Problem> Outline(const std::string& name, int control_points) {
+  return MakeFileFit("animals/" + name + ".csv", MakeFreeSpec(3, true, control_points));
+}
+
+TEST(Tdm, DivergesWithoutDampingWhereItConvergesWithIt) {
+  // Qin & Zhang, 2020, say so of examples like this one.
+  const auto problem = Outline("rhino_100", 8);
+  SolverTrial undamped(*problem, "tdm/damping=0/search=none", {50});
+  const std::vector<double> energies = EnergiesOf(&undamped);
+  EXPECT_GT(*std::max_element(energies.begin(), energies.end()), 100.0 * energies.front());
+  EXPECT_GT(energies.back(), energies.front());
+  SolverTrial damped(*problem, "tdm", {2000});
+  EXPECT_EQ(damped.outcome.reason, StopReason::kGradientSmall);
+  EXPECT_LT(damped.context.Energy(damped.x), 0.2 * energies.front());
+}
+
+TEST(FootNewton, EndsNoHigherThanNewtonFromACircle) {
+  for (const char* name : {"rhino_100", "squirrel_120", "dolphin_80"}) {
+    const auto problem = Outline(name, 12);
+    SolverTrial feet(*problem, "foot_newton");
+    SolverTrial newton(*problem, "newton");
+    EXPECT_TRUE(IsSuccess(feet.outcome.reason)) << name;
+    const double energy = newton.context.Energy(newton.x);
+    EXPECT_LE(feet.context.Energy(feet.x), energy * (1.0 + 1e3 * kEps)) << name;
+  }
+}
+
+TEST(Anderson, NeverRaisesTheEnergyAtTheFeetOverPdm) {
+  for (const char* name : {"rhino_100", "dolphin_80"}) {
+    const auto problem = Outline(name, 12);
+    SolverTrial trial(*problem, "anderson:pdm", {300});
+    const std::vector<double> energies = EnergiesOf(&trial);
+    Objective objective(problem.get(), nullptr);
+    for (std::size_t k = 1; k < energies.size(); ++k) {
+      // pdm's own step, which is taken where none is accelerated, may miss its minimum by rounding.
+      const double noise =
+          Objective::EnergyRoundingFloor(energies[k], objective.ResidualSize(trial.x));
+      ASSERT_LE(energies[k], energies[k - 1] + noise) << name << " " << k;
+    }
+    EXPECT_LT(energies.back(), 0.2 * energies.front()) << name;
+  }
+}
+
+/// A right answer or an honest end: E is finite and not above the start's.
+void ExpectEndsHonestly(const Problem& problem) {
+  for (const char* solver : kFreeSolvers) {
+    SCOPED_TRACE(solver);
+    ASSERT_EQ(WhyUnsupported(problem, solver), "");
+    SolverTrial trial(problem, solver, {200});
+    ASSERT_TRUE(trial.x.allFinite());
+    const double start = trial.context.Energy(Objective(&problem, nullptr).start());
+    const double end = trial.context.Energy(trial.x);
+    ASSERT_TRUE(std::isfinite(start));
+    // Points inside are of size 1: a start that is best already may move by its rounding.
+    const double noise = Objective::EnergyRoundingFloor(
+        start, Objective(&problem, nullptr).ResidualSize(problem.start()));
+    EXPECT_LE(end, start + noise) << ToString(trial.outcome.reason);
+    EXPECT_NE(trial.outcome.reason, StopReason::kNotRun);
+    EXPECT_NE(trial.outcome.reason, StopReason::kDiverged);
+    if (trial.outcome.reason == StopReason::kNumericalFailure) {
+      EXPECT_FALSE(trial.outcome.message.empty());
+    }
+  }
+}
+
+DataSet DataOf(const Points& points) {
+  DataSet data;
+  data.points = points;
+  return data;
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyWithPointsOnALine) {
+  Points points(30, 2);
+  for (int i = 0; i < 30; ++i) points.row(i) << 0.3 * i, 0.1 * i - 1.0;
+  for (const char* start : {"circle", "ellipse", "data"}) {
+    SCOPED_TRACE(start);
+    ExpectEndsHonestly(*MakeFit(DataOf(points), MakeFreeSpec(3, true, 8, start)));
+    ExpectEndsHonestly(*MakeFit(DataOf(points), MakeFreeSpec(3, false, 8, start)));
+  }
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyWithRepeatedPoints) {
+  DataSet data = MakeNoisyBean(12, 2, 601);
+  data.weights.reset();
+  const Points once = data.points;
+  data.points.resize(48, 2);
+  for (int i = 0; i < 48; ++i) data.points.row(i) = once.row(i / 4);
+  ExpectEndsHonestly(*MakeFit(data, MakeFreeSpec(3, true, 9)));
+  ExpectEndsHonestly(*MakeFit(data, MakeFreeSpec(3, false, 9, "data")));
+  // All at one place.
+  FitSpec spec = MakeFreeSpec(3, true, 6);
+  spec.parameters = Parameterization::kUniform;
+  ExpectEndsHonestly(*MakeFit(DataOf(Points::Constant(20, 2, 3.5)), spec));
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyFarFromTheStart) {
+  DataSet data = MakeNoisyBean(40, 2, 602);
+  data.weights.reset();
+  FitSpec spec = MakeFreeSpec(3, true, 9);
+  const auto plain = MakeFit(data, spec);
+  for (const double away : {1e2, 1e6}) {
+    SCOPED_TRACE(away);
+    spec.start_points = plain->curve_fit()->ControlPoints(plain->start());
+    spec.start_points.col(0).array() += away;
+    ExpectEndsHonestly(*MakeFit(data, spec));
+  }
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyFromACurveThatIsOnePoint) {
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(40, 2, 603), MakeFreeSpec(3, true, 9, "centroid")));
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(40, 3, 604), MakeFreeSpec(3, false, 9, "centroid")));
+  FitSpec spec = MakeFreeSpec(3, true, 9);
+  spec.start_points = Points::Constant(9, 2, 0.25);
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(40, 2, 605), spec));
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyWithFewerPointsThanControlPoints) {
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(7, 2, 606), MakeFreeSpec(3, true, 12)));
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(7, 3, 607), MakeFreeSpec(3, false, 12, "data")));
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyWithTwoPoints) {
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(2, 2, 608), MakeFreeSpec(3, false, 4, "data")));
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(2, 2, 609), MakeFreeSpec(3, true, 4, "circle")));
+  FitSpec spec = MakeFreeSpec(3, false, 4, "data");
+  spec.hold_ends = true;
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(2, 2, 610), spec));
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyOnLinesAndOnOneCoordinate) {
+  // Degree 1 has corners, one coordinate no normals.
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(40, 2, 611), MakeFreeSpec(1, true, 9)));
+  ExpectEndsHonestly(*MakeFit(MakeNoisyBean(40, 1, 612), MakeFreeSpec(3, false, 9, "data")));
+}
+
+}  // namespace
+}  // namespace batten
