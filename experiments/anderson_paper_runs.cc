@@ -72,7 +72,7 @@ double Polished(const Problem& problem, const Eigen::VectorXd& x) {
   double energy = kNaN;
   const Eigen::VectorXd feet = Feet(problem, x, &energy);
   RunSpec spec = RaceSpec(0.0);
-  spec.max_seconds = 10.0;  // The count ends it, so that it is the same on a busy machine.
+  spec.max_seconds = 10.0;  // The count ends it, on a busy machine too.
   spec.max_iterations = 2000;
   spec.keep_trace = false;
   spec.start = problem.curve_fit()->Variables(problem.curve_fit()->ControlPoints(x), feet);
@@ -161,7 +161,7 @@ double PolygonLength(const Points& polygon) {
 
 RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& spec,
                   int repetitions, CsvTable* runs, CsvTable* traces) {
-  const RunResult result = MedianRun(*on.problem, Parsed(solver), spec, repetitions);
+  RunResult result = MedianRun(*on.problem, Parsed(solver), spec, repetitions);
   const CurveFit& fit = *on.problem->curve_fit();
   std::vector<std::string> row = {on.example, on.start, solver,
                                   std::to_string(fit.parameters().size()),
