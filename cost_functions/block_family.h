@@ -76,7 +76,8 @@ class BlockFamily {
   virtual const FreeSites* free_sites() const { return nullptr; }
 
   /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x,
-  /// for as long as a variable with a Window stays there; the loss and weight are to be given to Ceres beside it.
+  /// for as long as a variable with a Window stays there; the loss and weight are to be given to
+  /// Ceres beside it.
   virtual std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& x,
                                                                      int block) const = 0;
   /// weight * loss for ceres::Problem, null where both are trivial. Each call makes a new one.

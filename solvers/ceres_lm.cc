@@ -161,11 +161,17 @@ std::optional<Outcome> CeresLmSolver::SolveBoundAt(Objective* objective, RunCont
   const Status status = booker->Finish(summary.IsSolutionUsable(), x);
   if (problem.stopped() || status != Status::kOk) return Outcome{context->stop_reason(), ""};
   if (summary.IsSolutionUsable() && *x != start) {
-    const bool goes_on = watch.has_arrived() || problem.AnyHeldWouldLeave();
+    if (watch.has_arrived()) {
+      ceres_options->initial_trust_region_radius =
+          std::max(summary.iterations.back().trust_region_radius, kLeastRadius);
+      return std::nullopt;
+    }
+    if (problem.PressedHaveChanged()) {
+      // Steps with other variables: the region has shrunk until none of the old ones helped.
+      ceres_options->initial_trust_region_radius = FirstRadius(options_, objective->problem());
+      return std::nullopt;
+    }
     if (problem.stopped()) return Outcome{context->stop_reason(), ""};
-    ceres_options->initial_trust_region_radius =
-        std::max(summary.iterations.back().trust_region_radius, kLeastRadius);
-    if (goes_on) return std::nullopt;
   }
   // "Residual and Jacobian evaluation failed", "Linear solver failed due to unrecoverable ...".
   const bool no_number = summary.termination_type == ceres::FAILURE &&

@@ -12,8 +12,8 @@
 namespace batten {
 
 /// Ceres' trust-region methods, Levenberg-Marquardt or dogleg, on Ceres' own problem of residual
-/// blocks. Where parameters are free it is a sequence of Ceres solves, each on blocks that are bound
-/// where the one before ended. docs/solvers/ceres_lm.md.
+/// blocks. Where parameters are free it is a sequence of Ceres solves, each on blocks that are
+/// bound where the one before ended. docs/solvers/ceres_lm.md.
 class CeresLmSolver final : public Solver {
  public:
   static SolverInfo ClassInfo();

@@ -157,12 +157,10 @@ void CeresProblem::HoldPressed() {
   for (const int variable : held_) problem_.SetParameterBlockConstant(state_.data() + variable);
 }
 
-bool CeresProblem::AnyHeldWouldLeave() {
-  if (held_.empty()) return false;
-  const std::vector<int> pressed = Pressed();
-  return !stopped_ && std::any_of(held_.begin(), held_.end(), [&pressed](int variable) {
-    return std::find(pressed.begin(), pressed.end(), variable) == pressed.end();
-  });
+bool CeresProblem::PressedHaveChanged() {
+  if (!moving_.AnyIsAtAnEnd()) return false;
+  const bool changed = Pressed() != held_;
+  return changed && !stopped_;
 }
 
 std::shared_ptr<ceres::ParameterBlockOrdering> CeresProblem::MovingFirst() {

@@ -26,8 +26,8 @@ std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_
 /// evaluation fails, without a look at the terms.
 class CeresProblem final : private ceres::EvaluationCallback {
  public:
-  /// `x`: the start in the free variables; it is moved into the bounds and windows. An evaluation counts as one
-  /// of kEnergy and, where Ceres wants derivatives, as one of `derivative` as well.
+  /// `x`: the start in the free variables; it is moved into the bounds and windows. An evaluation
+  /// counts as one of kEnergy and, where Ceres wants derivatives, as one of `derivative` as well.
   CeresProblem(Objective* objective, Evaluation derivative, const Eigen::VectorXd& x);
   CeresProblem(const CeresProblem&) = delete;
   CeresProblem& operator=(const CeresProblem&) = delete;
@@ -43,9 +43,8 @@ class CeresProblem final : private ceres::EvaluationCallback {
   /// this problem. Without that, each step takes account of a move that its bound then cuts off.
   /// Asks for a gradient if one is at an end.
   void HoldPressed();
-  /// The gradient at state() leads one that HoldPressed has held away from its end. Asks for it if
-  /// one is held.
-  bool AnyHeldWouldLeave();
+  /// At state() HoldPressed would hold others. Asks for a gradient if one was at an end then.
+  bool PressedHaveChanged();
   /// Moving variables in group 0, which Schur's complement eliminates, all others in group 1.
   std::shared_ptr<ceres::ParameterBlockOrdering> MovingFirst();
 

@@ -89,8 +89,8 @@ struct FootModel::Kernel {
     const bool is_pressed =
         !model.basis_.periodic() && ((t <= model.basis_.domain_begin() && state->along > 0.0) ||
                                      (t >= model.basis_.domain_end() && state->along < 0.0));
-    const bool stays = model.kind_ == FootModelKind::kPoint || model.moves_[i] == 0 ||
-                       is_pressed || !(speed > 0.0);
+    const bool stays = model.kind_ == FootModelKind::kPoint || model.moves_[i] == 0 || is_pressed ||
+                       !(speed > 0.0);
     if (stays) return 0.0;
     double denominator = (1.0 + model.damping_) * speed;
     if (model.kind_ == FootModelKind::kCurvature) {
@@ -342,9 +342,8 @@ bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping
   const double* control_points = x.data() + sites_.control_point_offset;
   PrepareCurve(control_points);
   SortBySpan(x.data() + sites_.parameter_offset);
-  WithKernel([&](const auto& kernel) {
-    ForEachShare([&kernel](int span) { kernel.SumSpan(span); });
-  });
+  WithKernel(
+      [&](const auto& kernel) { ForEachShare([&kernel](int span) { kernel.SumSpan(span); }); });
   AssembleBand();
   energy_ = 0.0;
   for (const double part : span_energies_) energy_ += part;

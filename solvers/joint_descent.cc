@@ -21,8 +21,7 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   if (fit == nullptr || !fit->has_free_parameters()) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
-  return name +
-         " takes one free_parameter term without loss and terms that are affine; use lbfgs";
+  return name + " takes one free_parameter term without loss and terms that are affine; use lbfgs";
 }
 
 std::string JointDescent::WhyUnsupported(const Objective& objective) const {
@@ -77,13 +76,12 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     // What rounding leaves of a difference of E.
     const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + here_->scale());
     const bool is_noise = std::abs(fall) <= noise && decrease_ <= noise;
-    const bool taken =
-        finite && (fall > 0.0 ||
-                   (is_noise && there_->half_gradient().norm() <= here_->half_gradient().norm()));
+    const bool taken = finite && (fall > 0.0 || (is_noise && there_->half_gradient().norm() <=
+                                                                 here_->half_gradient().norm()));
     if (taken) {
       const double ratio = is_noise ? 1.0 : fall / decrease_;
-      damping_ = std::max(
-          damping_ * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)), kLeastDamping);
+      damping_ = std::max(damping_ * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)),
+                          kLeastDamping);
       growth_ = 2.0;
       all_.swap(next_);
       here_.swap(there_);

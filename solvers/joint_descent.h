@@ -30,8 +30,8 @@ class JointDescent : public Stepper {
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
-  double decrease_ = 0.0;       // foretold
-  Eigen::VectorXd all_;         // all variables at x
+  double decrease_ = 0.0;  // foretold
+  Eigen::VectorXd all_;    // all variables at x
   Eigen::VectorXd next_;
   Eigen::VectorXd step_;
   std::unique_ptr<FootModel> here_;

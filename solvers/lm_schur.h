@@ -10,8 +10,7 @@ namespace batten {
 class LmSchurSolver final : public JointDescent {
  public:
   static SolverInfo ClassInfo();
-  explicit LmSchurSolver(const OptionValues& /*options*/)
-      : JointDescent(FootModelKind::kTangent) {}
+  explicit LmSchurSolver(const OptionValues& /*options*/) : JointDescent(FootModelKind::kTangent) {}
   SolverInfo Info() const override { return ClassInfo(); }
 };
 
