@@ -18,6 +18,17 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// kStop: leave now. kNonFinite: no number here; a line search may back up.
 enum class Status { kOk, kStop, kNonFinite };
 
+/// Where the variable that a block's binding depends on may go before Bind must be asked again.
+struct BindingWindow {
+  int variable = 0;
+  double place = 0.0;  ///< The variable, in [low, high]: of closed curves moved by whole periods.
+  double low = 0.0;
+  double high = 0.0;
+  /// No binding leads further on that side: it is an end of an open curve.
+  bool low_is_end = false;
+  bool high_is_end = false;
+};
+
 /// All residual blocks of one term, evaluated in loops rather than as single objects. Its energy is
 ///   weight * sum over blocks of rho(||r||^2)        (no factor 1/2)
 /// with rho the loss, the identity if loss() is null. Blocks are numbered in the order of their
@@ -34,6 +45,12 @@ class BlockFamily {
   /// The distinct variable groups block `block` depends on at x: offsets into x, and their sizes.
   virtual void Bind(const Eigen::VectorXd& x, int block, std::vector<int>* offsets,
                     std::vector<int>* sizes) const = 0;
+
+  /// Of the block bound at x. False, and *window as it was, where Bind does not depend on x.
+  virtual bool Window(const Eigen::VectorXd& /*x*/, int /*block*/,
+                      BindingWindow* /*window*/) const {
+    return false;
+  }
 
   /// Adds the energy of blocks begin..end-1 to *energy and, if `gradient` is not null, its gradient
   /// to *gradient; block by block in this order, so that partial sums are reproducible.
@@ -58,8 +75,9 @@ class BlockFamily {
   /// is no loss. Null otherwise.
   virtual const FreeSites* free_sites() const { return nullptr; }
 
-  /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x;
-  /// the loss and weight are to be given to Ceres beside it.
+  /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x,
+  /// for as long as a variable with a Window stays there; the loss and weight are to be given to
+  /// Ceres beside it.
   virtual std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& x,
                                                                      int block) const = 0;
   /// weight * loss for ceres::Problem, null where both are trivial. Each call makes a new one.

@@ -47,7 +47,7 @@ class FreeFamily final : public BlockFamily {
   int num_residuals() const override { return Functor::NumResiduals(setting_.dimension); }
   const FreeSites* free_sites() const override { return is_distance_ ? &sites_ : nullptr; }
 
-  /// Control points of the span and its neighbours, then t: what a Ceres cost function may touch
+  /// Control points of the window of spans around t, then t: what a Ceres cost function may touch
   /// before it is made anew.
   void Bind(const Eigen::VectorXd& x, int block, std::vector<int>* offsets,
             std::vector<int>* sizes) const override {
@@ -61,6 +61,19 @@ class FreeFamily final : public BlockFamily {
     sizes->assign(offsets->size(), setting_.dimension);
     offsets->push_back(setting_.parameter_offset + block);
     sizes->push_back(1);
+  }
+
+  bool Window(const Eigen::VectorXd& x, int block, BindingWindow* window) const override {
+    const BsplineBasis& basis = *setting_.basis;
+    const CurvePlace place = Place(x, block);
+    const FreeWindow spans(basis, place.span);
+    window->variable = setting_.parameter_offset + block;
+    window->place = place.t;
+    window->low = spans.low(basis);
+    window->high = spans.high(basis);
+    window->low_is_end = !basis.periodic() && window->low <= basis.domain_begin();
+    window->high_is_end = !basis.periodic() && window->high >= basis.domain_end();
+    return true;
   }
 
   std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& x,

@@ -11,8 +11,13 @@ void IterateBooker::Book() {
   status_ = context_->Iterate(booked_);
 }
 
-ceres::CallbackReturnType IterateBooker::operator()(const ceres::IterationSummary& /*summary*/) {
-  Book();
+void IterateBooker::GoOnFrom(const Eigen::VectorXd* state) {
+  state_ = state;
+  if (has_booked_) booked_ = *state;
+}
+
+ceres::CallbackReturnType IterateBooker::operator()(const ceres::IterationSummary& summary) {
+  if (summary.iteration > 0 || !has_booked_) Book();
   return status_ == Status::kOk ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
 }
 

@@ -13,11 +13,15 @@
 namespace batten {
 
 /// Shows run control each iterate of a Ceres minimiser: `state` is the vector that Ceres updates
-/// before it calls back, in the free variables.
+/// before it calls back, in the free variables. A run may be several solves, one after the other.
 class IterateBooker final : public ceres::IterationCallback {
  public:
   IterateBooker(RunContext* context, const Eigen::VectorXd* state)
       : context_(context), state_(state) {}
+
+  /// Another solve goes on from `state`, the last booked point in other coordinates (a parameter in
+  /// another period), whose iteration 0 is none of the run's.
+  void GoOnFrom(const Eigen::VectorXd* state);
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override;
 

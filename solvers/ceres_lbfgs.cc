@@ -3,6 +3,7 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
+#include "problems/fit_problem.h"
 #include "solvers/ceres_adapter.h"
 #include "solvers/ceres_problem.h"
 
@@ -84,7 +85,14 @@ std::string CeresLbfgsSolver::WhyUnsupported(const Objective& objective) const {
   std::string why = WhyNoBounds(objective, "ceres_lbfgs");
   if (!why.empty()) return why;
   const std::string& form = options_.Word("form");
-  if (form == "problem") return WhyNoCeresProblem(objective.problem(), "ceres_lbfgs/form=problem");
+  if (form == "problem") {
+    const CurveFit* fit = objective.problem().curve_fit();
+    if (fit != nullptr && fit->has_free_parameters()) {
+      return "ceres_lbfgs/form=problem cannot follow free parameters past their spans; use "
+             "form=objective";
+    }
+    return WhyNoCeresProblem(objective.problem(), "ceres_lbfgs/form=problem");
+  }
   return form == "spans" ? WhyNoCurveView(objective, "ceres_lbfgs/form=spans") : "";
 }
 

@@ -39,13 +39,18 @@ class Gate final : public ceres::CostFunction {
   const bool* closed_;
 };
 
-/// Groups of all variables that the terms' blocks ask for. False if some overlap.
-bool FindGroups(const Problem& problem, VariableGroups* groups) {
+Eigen::VectorXd IntoBounds(const Problem& problem, const Eigen::VectorXd& x) {
+  if (!problem.has_bounds()) return x;
+  return x.cwiseMax(problem.lower_bounds()).cwiseMin(problem.upper_bounds());
+}
+
+/// Groups of all variables that the terms' blocks ask for at x. False if some overlap.
+bool FindGroups(const Problem& problem, const Eigen::VectorXd& x, VariableGroups* groups) {
   std::vector<int> begins;
   std::vector<int> sizes;
   for (const Problem::TermInstance& term : problem.terms()) {
     for (int block = 0; block < term.family->size(); ++block) {
-      term.family->Bind(problem.start(), block, &begins, &sizes);
+      term.family->Bind(x, block, &begins, &sizes);
       for (std::size_t i = 0; i < begins.size(); ++i) {
         if (!groups->Add(begins[i], sizes[i])) return false;
       }
@@ -58,10 +63,11 @@ bool FindGroups(const Problem& problem, VariableGroups* groups) {
 
 std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_name) {
   VariableGroups groups(problem.num_variables());
-  if (!FindGroups(problem, &groups)) {
+  if (!FindGroups(problem, problem.start(), &groups)) {
     return solver_name + " needs terms that group the variables alike; use lbfgs";
   }
-  if (!problem.has_bounds()) return "";
+  std::string why = WhyNoWindows(problem, solver_name);
+  if (!why.empty() || !problem.has_bounds()) return why;
   if (!problem.elimination().trivial()) {
     return solver_name + " takes bounds or linear constraints, not both";
   }
@@ -74,12 +80,11 @@ std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_
 }
 
 CeresProblem::CeresProblem(Objective* objective, Evaluation derivative, const Eigen::VectorXd& x)
-    : objective_(objective), derivative_(derivative), state_(x), problem_(ProblemOptions(this)) {
-  const Problem& problem = objective_->problem();
-  if (problem.has_bounds()) {
-    state_ = state_.cwiseMax(problem.lower_bounds()).cwiseMin(problem.upper_bounds());
-  }
-}
+    : objective_(objective),
+      derivative_(derivative),
+      state_(IntoBounds(objective->problem(), x)),
+      moving_(objective->problem(), &state_),
+      problem_(ProblemOptions(this)) {}
 
 void CeresProblem::PrepareForEvaluation(bool evaluate_jacobians, bool /*new_evaluation_point*/) {
   if (stopped_) return;
@@ -117,21 +122,56 @@ void CeresProblem::AddBlock(std::unique_ptr<ceres::CostFunction> cost,
 
 void CeresProblem::AddTerms() {
   const Problem& problem = objective_->problem();
+  const Eigen::VectorXd x = objective_->Expand(state_);
   VariableGroups all(problem.num_variables());
-  CHECK(FindGroups(problem, &all));
+  CHECK(FindGroups(problem, x, &all));
   const FreeGroups free(problem.elimination(), all);
   AddGroups(free.groups());
   std::vector<int> begins;
   std::vector<int> sizes;
-  // Which variables a block has may depend on where the run starts, not the problem.
-  const Eigen::VectorXd start = objective_->Expand(state_);
   for (const Problem::TermInstance& term : problem.terms()) {
     for (int block = 0; block < term.family->size(); ++block) {
-      term.family->Bind(start, block, &begins, &sizes);
-      auto cost = free.Rewrite(term.family->MakeCeresCostFunction(start, block), &begins);
+      term.family->Bind(x, block, &begins, &sizes);
+      auto cost = free.Rewrite(term.family->MakeCeresCostFunction(x, block), &begins);
       AddBlock(std::move(cost), term.family->MakeCeresLoss(), begins);
     }
   }
+  for (const BindingWindow& window : moving_.windows()) {
+    double* value = state_.data() + window.variable;
+    problem_.SetParameterLowerBound(value, 0, window.low);
+    problem_.SetParameterUpperBound(value, 0, window.high);
+  }
+}
+
+std::vector<int> CeresProblem::Pressed() {
+  double energy = 0.0;
+  Eigen::VectorXd gradient;
+  const Status status = objective_->EnergyAndGradient(state_, &energy, &gradient);
+  stopped_ = status == Status::kStop;
+  return status == Status::kOk ? moving_.Pressed(state_, gradient) : std::vector<int>();
+}
+
+void CeresProblem::HoldPressed() {
+  if (!moving_.AnyIsAtAnEnd()) return;
+  held_ = Pressed();
+  for (const int variable : held_) problem_.SetParameterBlockConstant(state_.data() + variable);
+}
+
+bool CeresProblem::PressedHaveChanged() {
+  if (!moving_.AnyIsAtAnEnd()) return false;
+  const bool changed = Pressed() != held_;
+  return changed && !stopped_;
+}
+
+std::shared_ptr<ceres::ParameterBlockOrdering> CeresProblem::MovingFirst() {
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  std::vector<double*> blocks;
+  problem_.GetParameterBlocks(&blocks);
+  for (double* block : blocks) ordering->AddElementToGroup(block, 1);
+  for (const BindingWindow& window : moving_.windows()) {
+    ordering->AddElementToGroup(state_.data() + window.variable, 0);
+  }
+  return ordering;
 }
 
 void CeresProblem::AddSpans() {

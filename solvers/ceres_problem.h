@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
 #include <ceres/loss_function.h>
+#include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
 
 #include <memory>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "problems/objective.h"
+#include "solvers/moving_variables.h"
 #include "solvers/variable_groups.h"
 
 namespace batten {
@@ -24,24 +26,37 @@ std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_
 /// evaluation fails, without a look at the terms.
 class CeresProblem final : private ceres::EvaluationCallback {
  public:
-  /// `x`: the start in the free variables; it is moved into the bounds. An evaluation counts as one
-  /// of kEnergy and, where Ceres wants derivatives, as one of `derivative` as well.
+  /// `x`: the start in the free variables; it is moved into the bounds and windows. An evaluation
+  /// counts as one of kEnergy and, where Ceres wants derivatives, as one of `derivative` as well.
   CeresProblem(Objective* objective, Evaluation derivative, const Eigen::VectorXd& x);
   CeresProblem(const CeresProblem&) = delete;
   CeresProblem& operator=(const CeresProblem&) = delete;
 
   /// All blocks of all terms: the families' own, or where linear constraints determine one of a
-  /// block's variables, its like in the free ones. Either this or AddSpans, once.
+  /// block's variables, its like in the free ones. Blocks with a window are bound at state(), and
+  /// their variable is bounded to it. Either this or AddSpans, once.
   void AddTerms();
   /// One block per span of the curve view, which must be there, instead of one per row.
   void AddSpans();
 
+  /// After AddTerms: variables at an end of an open curve past which E still falls are constant in
+  /// this problem. Without that, each step takes account of a move that its bound then cuts off.
+  /// Asks for a gradient if one is at an end.
+  void HoldPressed();
+  /// At state() HoldPressed would hold others. Asks for a gradient if one was at an end then.
+  bool PressedHaveChanged();
+  /// Moving variables in group 0, which Schur's complement eliminates, all others in group 1.
+  std::shared_ptr<ceres::ParameterBlockOrdering> MovingFirst();
+
   ceres::Problem* problem() { return &problem_; }
+  const MovingVariables& moving() const { return moving_; }
   const Eigen::VectorXd& state() const { return state_; }
   bool stopped() const { return stopped_; }  ///< The monitor has said no.
 
  private:
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+  /// Moving variables pressed against an end at state(); none where E has no gradient.
+  std::vector<int> Pressed();
   /// Parameter blocks, their bounds, and the gate on the first one.
   void AddGroups(const VariableGroups& groups);
   void AddBlock(std::unique_ptr<ceres::CostFunction> cost,
@@ -50,6 +65,8 @@ class CeresProblem final : private ceres::EvaluationCallback {
   Objective* objective_;
   Evaluation derivative_;
   Eigen::VectorXd state_;
+  MovingVariables moving_;  // puts state_ into the windows
+  std::vector<int> held_;
   bool stopped_ = false;
   ceres::Problem problem_;
 };
