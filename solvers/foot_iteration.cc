@@ -1,6 +1,7 @@
 #include "solvers/foot_iteration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "solvers/foot_projection.h"
@@ -84,7 +85,7 @@ Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   Status status = Try(all, step, 1.0, g_of_x, &energy);
   if (!search_) return status;
   const double before = model_->energy();
-  const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + model_->scale());
+  const double noise = Objective::EnergyRoundingFloor(before, 2.0 * std::sqrt(model_->scale()));
   constexpr int kMostHalvings = 20;
   double part = 1.0;
   for (int k = 0; k < kMostHalvings; ++k) {

@@ -75,8 +75,9 @@ void ExpectEndsHonestly(const Problem& problem) {
     const double end = trial.context.Energy(trial.x);
     ASSERT_TRUE(std::isfinite(start));
     // Points inside are of size 1: a start that is best already may move by its rounding.
-    const double noise = Objective::EnergyRoundingFloor(
-        start, Objective(&problem, nullptr).ResidualSize(problem.start()));
+    const double size = Objective(&problem, nullptr).ResidualSize(problem.start());
+    const double noise =
+        Objective::EnergyRoundingFloor(start, size) + std::pow(16 * kEps * size, 2);
     EXPECT_LE(end, start + noise) << ToString(trial.outcome.reason);
     EXPECT_NE(trial.outcome.reason, StopReason::kNotRun);
     EXPECT_NE(trial.outcome.reason, StopReason::kDiverged);
