@@ -37,6 +37,7 @@ std::string FootIteration::WhyUnsupported(const Objective& objective) const {
 
 std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
+  found_no_part_ = false;
   model_ = std::make_unique<FootModel>(*objective()->free_view(), context()->threads());
   const Status status = Complete(x);
   if (status != Status::kOk) return Ended(status);
@@ -93,11 +94,17 @@ Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
     part *= 0.5;
     status = Try(all, step, part, g_of_x, &energy);
   }
+  // As at corners and where the curve is a point, whose tangents are rounding.
+  found_no_part_ = status == Status::kOk && !(energy <= before + noise);
+  if (found_no_part_) *g_of_x = x;
   return status;
 }
 
 std::optional<Outcome> FootIteration::Inspect(const Eigen::VectorXd& x,
                                               const Eigen::VectorXd& g_of_x) {
+  if (found_no_part_) {
+    return Outcome{StopReason::kLineSearchEnded, "no part of the step lowers E measurably"};
+  }
   const Eigen::Index mapped = num_mapped(x);
   return guard_.Check((g_of_x - x).head(mapped).norm());
 }
