@@ -145,7 +145,8 @@ std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
   x->swap(candidate_);
   energy_ = next_energy_;
   gradient_.swap(next_gradient_);
-  return guard_.Check(move_.norm());
+  // Moves can grow for long while E falls, where it is not quadratic.
+  return guard_.Check(objective()->is_quadratic() ? move_.norm() : energy_);
 }
 
 void AndersonSolver::AtEnd() {

@@ -1,6 +1,7 @@
 #include "solvers/foot_iteration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "solvers/foot_projection.h"
@@ -36,6 +37,7 @@ std::string FootIteration::WhyUnsupported(const Objective& objective) const {
 
 std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
+  found_no_part_ = false;
   model_ = std::make_unique<FootModel>(*objective()->free_view(), context()->threads());
   const Status status = Complete(x);
   if (status != Status::kOk) return Ended(status);
@@ -84,7 +86,7 @@ Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   Status status = Try(all, step, 1.0, g_of_x, &energy);
   if (!search_) return status;
   const double before = model_->energy();
-  const double noise = 64.0 * std::numeric_limits<double>::epsilon() * (before + model_->scale());
+  const double noise = Objective::EnergyRoundingFloor(before, 2.0 * std::sqrt(model_->scale()));
   constexpr int kMostHalvings = 20;
   double part = 1.0;
   for (int k = 0; k < kMostHalvings; ++k) {
@@ -92,13 +94,19 @@ Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
     part *= 0.5;
     status = Try(all, step, part, g_of_x, &energy);
   }
+  // As at corners and where the curve is a point, whose tangents are rounding.
+  found_no_part_ = status == Status::kOk && !(energy <= before + noise);
+  if (found_no_part_) *g_of_x = x;
   return status;
 }
 
-std::optional<Outcome> FootIteration::Inspect(const Eigen::VectorXd& x,
-                                              const Eigen::VectorXd& g_of_x) {
-  const Eigen::Index mapped = num_mapped(x);
-  return guard_.Check((g_of_x - x).head(mapped).norm());
+std::optional<Outcome> FootIteration::Inspect(const Eigen::VectorXd& /*x*/,
+                                              const Eigen::VectorXd& /*g_of_x*/) {
+  if (found_no_part_) {
+    return Outcome{StopReason::kLineSearchEnded, "no part of the step lowers E measurably"};
+  }
+  // Not by the move, which can grow for thousands of iterations while points slide and E falls.
+  return guard_.Check(model_->energy());
 }
 
 std::vector<double> FootIteration::State() const {

@@ -25,7 +25,7 @@ class FootIteration : public FixedPoint {
 
  protected:
   /// `damping`: of the model, relative to its diagonal. With `search` a step is halved while E
-  /// rises.
+  /// rises; where no part of it lowers E the run ends.
   FootIteration(FootModelKind kind, double damping, bool search)
       : kind_(kind), damping_(damping), search_(search) {}
   /// The control points' step at all variables. False where the model has none.
@@ -42,6 +42,7 @@ class FootIteration : public FixedPoint {
   double damping_;
   bool search_;
   std::unique_ptr<FootModel> model_;
+  bool found_no_part_ = false;  // of the last step that lowers E
   StallGuard guard_;
 };
 

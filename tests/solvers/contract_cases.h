@@ -29,6 +29,9 @@ class EverySolver : public ::testing::TestWithParam<std::string> {
   std::string name() const { return SolverRegistry::Global().UsualName(GetParam()); }
   /// The same for problems with free parameters, where another base is usual.
   std::string free_name() const { return FreeName(GetParam()); }
+  /// Ceres' blocks keep the spans that the points are in at the start, and are no part of E once a
+  /// point leaves them and their neighbours.
+  bool keeps_its_spans() const { return GetParam() == "ceres_lm"; }
   /// It takes no problem but those with free parameters.
   bool needs_free_parameters() const {
     const std::vector<std::string> needs = SolverRegistry::Global().Find(GetParam())->needs;

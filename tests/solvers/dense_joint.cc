@@ -80,7 +80,9 @@ DenseJoint::Reduced DenseJoint::Reduce(FootModelKind kind, double damping) const
 
 Eigen::VectorXd DenseJoint::Step(FootModelKind kind, double damping) const {
   Eigen::MatrixXd h = HalfHessian(kind);
-  h.diagonal() += damping * gauss_newton_.diagonal();
+  Eigen::VectorXd added = gauss_newton_.diagonal();
+  added.head(points_) = added.head(points_).cwiseMax(1e-3 * added.head(points_).mean());
+  h.diagonal() += damping * added;
   const Eigen::VectorXd solution = h.ldlt().solve(-gradient_);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(free_);
   step.head(points_) = solution.head(points_);

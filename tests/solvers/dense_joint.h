@@ -24,7 +24,8 @@ class DenseJoint {
   };
   Reduced Reduce(FootModelKind kind, double damping) const;
   /// The joint step -(H + D)^-1 g of the same model, control points, then all free parameters (zero
-  /// where they stay); D is `damping` times the diagonal of J'J.
+  /// where they stay); D is `damping` times the diagonal of J'J, for control points at least 1e-3
+  /// of its mean.
   Eigen::VectorXd Step(FootModelKind kind, double damping) const;
   /// What the quadratic model, not damped, says that E falls by.
   double Fall(FootModelKind kind, const Eigen::VectorXd& step) const;

@@ -21,6 +21,7 @@ struct ModelCase {
   std::string name;
   std::function<std::unique_ptr<Problem>()> make;
 };
+void PrintTo(const ModelCase& row, std::ostream* stream) { *stream << row.name; }
 
 std::vector<ModelCase> ModelCases() {
   const auto closed = [](int degree, int n, int dimension, bool weighted) {
@@ -79,6 +80,17 @@ class FootModels : public ::testing::TestWithParam<ModelCase> {
     }
     return x;
   }
+  /// The move from x to y: without the periods that parameters of closed curves wrap by; those of
+  /// open ones end at the ends of the domain.
+  Eigen::VectorXd Taken(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
+    const BsplineBasis& basis = problem_->curve_fit()->basis();
+    Eigen::VectorXd taken = y - x;
+    for (Eigen::Index k = problem_->ranges().front().size; k < x.size(); ++k) {
+      taken[k] = basis.periodic() ? std::remainder(taken[k], basis.domain_length())
+                                  : basis.Wrap(y[k]) - x[k];
+    }
+    return taken;
+  }
   void ExpectReducesAs(FootModelKind kind, double damping, const Eigen::VectorXd& x) {
     const DenseJoint dense(*problem_, x);
     ASSERT_GT(dense.num_moving(), 0);
@@ -133,8 +145,11 @@ TEST_P(FootModels, OfCurvatureTakeTheLesserOfTwoWeights) {
 }
 
 TEST_P(FootModels, MoveControlPointsAndParametersByTheDampedJointStep) {
-  for (const FootModelKind kind : {FootModelKind::kTangent, FootModelKind::kNewton}) {
-    for (const double damping : {0.05, 3.0}) {
+  // Newton's Hessian is positive definite near a minimum only, or much damped.
+  for (const auto& [kind, dampings] :
+       {std::pair(FootModelKind::kTangent, std::vector<double>{0.05, 3.0}),
+        std::pair(FootModelKind::kNewton, std::vector<double>{30.0, 100.0})}) {
+    for (const double damping : dampings) {
       const Eigen::VectorXd x = OffTheFeet(0.05);
       const DenseJoint dense(*problem_, x);
       FootModel model(*objective_.free_view(), 1);
@@ -143,22 +158,19 @@ TEST_P(FootModels, MoveControlPointsAndParametersByTheDampedJointStep) {
       Eigen::VectorXd step, next;
       model.Solve(&step);
       const double fall = model.Move(objective_.Expand(x), step, &next);
-      const Eigen::VectorXd expected = dense.Step(kind, damping);
-      // The damping bounds the condition by about the number of variables over it.
-      const double near = kRelative * expected.norm();
-      EXPECT_LT((step - expected.head(step.size())).norm(), near);
-      EXPECT_NEAR(fall, dense.Fall(kind, expected), kRelative * std::abs(fall));
       EXPECT_GT(fall, 0.0);
-      // Open parameters stay in the domain, those of closed curves go on from where they wrap to.
+      const Eigen::VectorXd taken = Taken(x, problem_->elimination().FreeVariables(next));
       const BsplineBasis& basis = problem_->curve_fit()->basis();
-      const Eigen::VectorXd moved = problem_->elimination().FreeVariables(next);
-      for (Eigen::Index k = 0; k < x.size(); ++k) {
-        const bool is_parameter = k >= step.size();
-        const double aim = x[k] + expected[k];
-        EXPECT_NEAR(is_parameter ? basis.Wrap(moved[k]) : moved[k],
-                    is_parameter ? basis.Wrap(aim) : aim, near)
-            << k;
+      if (basis.num_control_points() <= basis.degree()) {
+        // One control point stands in several places of a row, and D has the sum of their squares.
+        EXPECT_NEAR(fall, dense.Fall(kind, taken), kRelative * fall);
+        continue;
       }
+      // The damping bounds the condition by about the number of variables over it.
+      const Eigen::VectorXd expected = dense.Step(kind, damping);
+      EXPECT_NEAR(fall, dense.Fall(kind, expected), kRelative * fall);
+      const Eigen::VectorXd aim = basis.periodic() ? expected : Taken(x, x + expected);
+      EXPECT_LT((taken - aim).norm(), kRelative * expected.norm());
     }
   }
 }
@@ -182,7 +194,8 @@ TEST_P(FootModels, ImproveFeetMovesNoPointAwayFromItsFoot) {
   for (Eigen::Index i = 0; i < old_ones.size(); ++i) {
     EXPECT_LE(new_ones[i], old_ones[i] + rounding) << i;
     const int span = fit.basis().FindSpan(fit.Parameters(before)[i]);
-    const double t = fit.Parameters(after)[i];
+    // Not wrapped, so that the end of the last span stays what it is.
+    const double t = after[points + i];
     EXPECT_GE(t, fit.basis().knots()[span]);
     EXPECT_LE(t, fit.basis().knots()[span + 1]);
   }
