@@ -36,7 +36,7 @@ ceres::LinearSolverType LinearSolverType(const std::string& word) {
 
 constexpr double kLeastRadius = 1e-20;  // Ceres gives up at 1e-32
 
-/// The outlines in data/animals need 9 at most; only a run that goes to and fro gets there.
+/// The outlines in data/animals need 13 at most; only a run that goes to and fro gets there.
 constexpr int kMostRebindings = 1000;
 
 /// Where E is quadratic one undamped step solves it. A first radius of 1e12 damps that step by

@@ -58,13 +58,13 @@ double InnerGradientNorm(const Problem& problem, const Eigen::VectorXd& x) {
 
 /// Ceres ends where a step leaves E equal to the last bit, so that a step along -g, which lowers it
 /// by |g|^2 / (2 q), q the curvature there, does so by few roundings of E; 100 of them for sums of
-/// 200 squares. q is at most the trace of the second derivative of a sum of squares: d m for the
-/// control points, since the squares of basis functions at t sum to at most 1, and as much again
-/// for the parameters, whose columns J scales alike: the domain is 1 long, as the data's box.
+/// 200 squares. q is at most the sum of the largest eigenvalues of 2 J'J in the control points, 2
+/// m, as basis functions sum to 1, and in the parameters, 2 |C'|^2: less than that again, with m
+/// near 100, for an outline in a box of side 1 whose domain is as long.
 double SmallGradient(const Problem& problem, LmTrial* trial) {
-  const double points = static_cast<double>(problem.curve_fit()->data().points.size());
-  const double noise = 100.0 * kEpsilon * trial->context.Energy(trial->x);
-  return std::sqrt(2.0 * (2.0 * points) * noise);
+  const auto m = static_cast<double>(problem.curve_fit()->data().points.rows());
+  const double curvature = 4.0 * m;
+  return std::sqrt(2.0 * curvature * 100.0 * kEpsilon * trial->context.Energy(trial->x));
 }
 
 TEST(CeresLmFree, EndsAtAStationaryPointThoughSpansChange) {

@@ -104,5 +104,21 @@ TEST(MovingVariables, CeresHasEAndItsGradientAnywhereInTheWindows) {
   }
 }
 
+TEST(MovingVariables, OneThatAConstraintHoldsMayBeInAnotherPeriod) {
+  const auto problem = FreeFit(true, 12, {});
+  const int held = problem->curve_fit()->setting().parameter_offset + 7;
+  SetConstraints({{"held", {{held, 1.0}}, 4.3}}, problem.get());
+  Objective objective(problem.get(), nullptr);
+  CeresProblem bound(&objective, Evaluation::kGradient, objective.start());
+  bound.AddTerms();
+  EXPECT_EQ(bound.moving().windows().size(), 49U);
+  double cost = 0.0;
+  double energy = 0.0;
+  ASSERT_TRUE(bound.problem()->Evaluate({}, &cost, nullptr, nullptr, nullptr));
+  ASSERT_EQ(objective.Energy(objective.start(), &energy), Status::kOk);
+  // 100 squares below 1, and one t rounded by 4 eps.
+  EXPECT_NEAR(2.0 * cost, energy, 1000.0 * std::numeric_limits<double>::epsilon());
+}
+
 }  // namespace
 }  // namespace batten
