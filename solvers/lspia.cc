@@ -80,7 +80,7 @@ std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
   last_move_.resize(0);
   alternations_ = 0;
   // Cauchy's steps change from one iteration to the next, and the longest move can come late.
-  guard_.Reset(step_rule_ == "cauchy" ? 10 * StallGuard::kPatience : StallGuard::kPatience);
+  guard_.Reset(step_rule_ == "cauchy" ? 3 * StallGuard::kPatience : StallGuard::kPatience);
   return ChooseStep(*x);
 }
 

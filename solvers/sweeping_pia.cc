@@ -8,7 +8,7 @@ std::string SweepingPia::WhyUnsupported(const Objective& objective) const {
 
 std::optional<Outcome> SweepingPia::DoStart(Eigen::VectorXd* /*x*/) {
   // Converges always, but of moves along tiny eigenvalues the longest can come late.
-  constexpr int kPatience = 10 * StallGuard::kPatience;
+  constexpr int kPatience = 3 * StallGuard::kPatience;
   guard_.Reset(kPatience);
   sweep_.emplace(&objective()->curve_view()->normal_band());
   return std::nullopt;
