@@ -118,7 +118,7 @@ Status AndersonSolver::TryCandidate(const Eigen::VectorXd& x, bool* rises) {
 }
 
 std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
-  Status status = map_->Map(*x, &image_);
+  Status status = map_->MapLeading(*x, &image_);
   if (status != Status::kOk) return Ended(status);
   const Eigen::Index mapped = map_->num_mapped(*x);
   move_ = image_.head(mapped) - x->head(mapped);
@@ -134,7 +134,8 @@ std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
   if (rises || status != Status::kOk) {
     num_rejected_ += move_differences_.empty() ? 0 : 1;
     candidate_ = image_;
-    status = TryCandidate(*x, &rises);
+    status = map_->Complete(&candidate_);
+    if (status == Status::kOk) status = TryCandidate(*x, &rises);
     if (status != Status::kOk) return Ended(status);
     if (rises && !base_raises_) {
       base_raises_ = true;

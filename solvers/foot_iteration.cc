@@ -74,17 +74,31 @@ Status FootIteration::Try(const Eigen::VectorXd& all, const Eigen::VectorXd& ste
   next.segment(objective()->free_view()->sites().control_point_offset, step.size()) += part * step;
   *g_of_x = objective()->problem().elimination().FreeVariables(next);
   const Status status = Complete(g_of_x);
-  return status == Status::kOk && search_ ? objective()->Energy(*g_of_x, energy) : status;
+  return status == Status::kOk ? objective()->Energy(*g_of_x, energy) : status;
+}
+
+Status FootIteration::MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
+  if (search_) return Map(x, g_of_x);
+  if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
+  Eigen::VectorXd all = objective()->Expand(x);
+  Eigen::VectorXd step;
+  if (!MakeStep(all, &step)) return Status::kNonFinite;
+  all.segment(objective()->free_view()->sites().control_point_offset, step.size()) += step;
+  *g_of_x = objective()->problem().elimination().FreeVariables(all);
+  return Status::kOk;
 }
 
 Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
+  if (!search_) {
+    const Status status = MapLeading(x, g_of_x);
+    return status == Status::kOk ? Complete(g_of_x) : status;
+  }
   if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
   const Eigen::VectorXd all = objective()->Expand(x);
   Eigen::VectorXd step;
   if (!MakeStep(all, &step)) return Status::kNonFinite;
   double energy = 0.0;
   Status status = Try(all, step, 1.0, g_of_x, &energy);
-  if (!search_) return status;
   const double before = model_->energy();
   const double noise = Objective::EnergyRoundingFloor(before, 2.0 * std::sqrt(model_->scale()));
   constexpr int kMostHalvings = 20;

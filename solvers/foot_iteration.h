@@ -19,6 +19,8 @@ class FootIteration : public FixedPoint {
   std::vector<double> State() const override;
   void Restore(const std::vector<double>& state) override;
   Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) final;
+  /// Without the search for the new feet, unless a step's length depends on them.
+  Status MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) final;
   Eigen::Index num_mapped(const Eigen::VectorXd& x) const final;
   /// Sets the parameters to the feet on the curve of the control points.
   Status Complete(Eigen::VectorXd* x) final;

@@ -50,6 +50,11 @@ class FixedPoint : public Stepper {
   /// How many leading variables the map is one of; the others follow from them by Complete.
   virtual Eigen::Index num_mapped(const Eigen::VectorXd& x) const { return x.size(); }
   virtual Status Complete(Eigen::VectorXd* /*x*/) { return Status::kOk; }
+  /// The leading variables of G(x), the others as they may be: for those that do not need them, or
+  /// complete them later.
+  virtual Status MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
+    return Map(x, g_of_x);
+  }
 
  protected:
   /// Called with x and G(x) after each plain step; an outcome ends the run (a stall guard).
