@@ -82,8 +82,8 @@ struct FreeFunctorAtSite {
     if (!(ScalarOf(t) >= low)) t = T(low);
     if (!(ScalarOf(t) <= high)) t = T(high);
     int span = window.first_span;
-    while (span < window.last_span && ScalarOf(t) >= window.Knot(*basis, span + 1)) ++span;
-    const int period = window.PeriodOfSpan(*basis, span);
+    while (span < window.last_span && ScalarOf(t) >= FreeWindow::Knot(*basis, span + 1)) ++span;
+    const int period = FreeWindow::PeriodOfSpan(*basis, span);
     Site<T, -1, -1, Functor::kDerivatives> site(p, dimension);
     EvaluateBasisDerivatives(p, basis->knots().data(), span - period * basis->num_control_points(),
                              t - period * basis->domain_length(), Functor::kDerivatives,

@@ -43,7 +43,7 @@ Eigen::VectorXd CurveFit::Variables(const Points& control_points) const {
 }
 
 Eigen::VectorXd CurveFit::Variables(const Points& control_points, const Eigen::VectorXd& t) const {
-  const Eigen::VectorXd points = Variables(control_points);
+  Eigen::VectorXd points = Variables(control_points);
   if (!has_free_parameters()) return points;
   Eigen::VectorXd x(points.size() + t.size());
   x << points, t;

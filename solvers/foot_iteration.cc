@@ -58,14 +58,9 @@ Status FootIteration::Complete(Eigen::VectorXd* x) {
 
 bool FootIteration::MakeStep(const Eigen::VectorXd& all, Eigen::VectorXd* step) {
   if (!model_->Sum(all, kind_, 0.0)) return false;
-  // Enough to make a singular system solvable: what the model does not see stays.
-  constexpr double kLeast = 64.0 * std::numeric_limits<double>::epsilon();
-  for (double damping = std::max(damping_, kLeast); damping < 1e8; damping *= 100.0) {
-    if (!model_->Factor(damping)) continue;
-    model_->Solve(step);
-    return step->allFinite();
-  }
-  return false;
+  if (!model_->FactorSingular(damping_)) return false;
+  model_->Solve(step);
+  return step->allFinite();
 }
 
 Status FootIteration::Try(const Eigen::VectorXd& all, const Eigen::VectorXd& step, double part,

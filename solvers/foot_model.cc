@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "solvers/foot_model_kernel.h"
@@ -226,6 +227,17 @@ bool FootModel::Factor(double damping) {
     }
   }
   return cholesky_.Factor(damped_);
+}
+
+bool FootModel::FactorSingular(double damping) {
+  // What the model does not see stays where it is.
+  constexpr double kLeast = 64.0 * std::numeric_limits<double>::epsilon();
+  constexpr int kMostTries = 9;
+  damping = std::max(damping, kLeast);
+  for (int tried = 0; tried < kMostTries; ++tried, damping *= 100.0) {
+    if (Factor(damping)) return true;
+  }
+  return false;
 }
 
 void FootModel::Solve(Eigen::VectorXd* step) const {

@@ -38,6 +38,9 @@ class FootModel {
   /// Factors the half Hessian + damping * (its diagonal for a = 0). False if that is not positive
   /// definite to working precision.
   bool Factor(double damping);
+  /// Factor with this damping, at least what makes a singular system solvable; more, up to 1e16
+  /// times, until it is.
+  bool FactorSingular(double damping);
   /// -(half Hessian)^-1 (half gradient), n d numbers; after Factor.
   void Solve(Eigen::VectorXd* step) const;
   /// Half gradient in the control points, t eliminated.
