@@ -33,7 +33,7 @@ void Stepper::WarnOfDivergence(const std::string& why) {
 
 Outcome Stepper::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
   if (std::optional<Outcome> outcome = Start(objective, context, x)) return *outcome;
-  const Outcome outcome = Loop(x);
+  Outcome outcome = Loop(x);
   AtEnd();
   return outcome;
 }
