@@ -65,22 +65,33 @@ bool FootIteration::MakeStep(const Eigen::VectorXd& all, Eigen::VectorXd* step) 
 
 Status FootIteration::Try(const Eigen::VectorXd& all, const Eigen::VectorXd& step, double part,
                           Eigen::VectorXd* g_of_x, double* energy) {
-  Eigen::VectorXd next = all;
-  next.segment(objective()->free_view()->sites().control_point_offset, step.size()) += part * step;
-  *g_of_x = objective()->problem().elimination().FreeVariables(next);
+  *g_of_x = MovedBy(all, step, part);
   const Status status = Complete(g_of_x);
   return status == Status::kOk ? objective()->Energy(*g_of_x, energy) : status;
 }
 
+/// All variables at x, and the control points' step there.
+Status FootIteration::FindStep(const Eigen::VectorXd& x, Eigen::VectorXd* all,
+                               Eigen::VectorXd* step) {
+  if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
+  *all = objective()->Expand(x);
+  return MakeStep(*all, step) ? Status::kOk : Status::kNonFinite;
+}
+
+/// The free variables with the control points moved by a part of the step, parameters as they were.
+Eigen::VectorXd FootIteration::MovedBy(const Eigen::VectorXd& all, const Eigen::VectorXd& step,
+                                       double part) const {
+  Eigen::VectorXd next = all;
+  next.segment(objective()->free_view()->sites().control_point_offset, step.size()) += part * step;
+  return objective()->problem().elimination().FreeVariables(next);
+}
+
 Status FootIteration::MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   if (search_) return Map(x, g_of_x);
-  if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
-  Eigen::VectorXd all = objective()->Expand(x);
-  Eigen::VectorXd step;
-  if (!MakeStep(all, &step)) return Status::kNonFinite;
-  all.segment(objective()->free_view()->sites().control_point_offset, step.size()) += step;
-  *g_of_x = objective()->problem().elimination().FreeVariables(all);
-  return Status::kOk;
+  Eigen::VectorXd all, step;
+  const Status status = FindStep(x, &all, &step);
+  if (status == Status::kOk) *g_of_x = MovedBy(all, step, 1.0);
+  return status;
 }
 
 Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
@@ -88,12 +99,11 @@ Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
     const Status status = MapLeading(x, g_of_x);
     return status == Status::kOk ? Complete(g_of_x) : status;
   }
-  if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
-  const Eigen::VectorXd all = objective()->Expand(x);
-  Eigen::VectorXd step;
-  if (!MakeStep(all, &step)) return Status::kNonFinite;
+  Eigen::VectorXd all, step;
+  Status status = FindStep(x, &all, &step);
+  if (status != Status::kOk) return status;
   double energy = 0.0;
-  Status status = Try(all, step, 1.0, g_of_x, &energy);
+  status = Try(all, step, 1.0, g_of_x, &energy);
   const double before = model_->energy();
   const double noise = Objective::EnergyRoundingFloor(before, 2.0 * std::sqrt(model_->scale()));
   constexpr int kMostHalvings = 20;

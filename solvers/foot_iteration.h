@@ -37,6 +37,9 @@ class FootIteration : public FixedPoint {
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> Inspect(const Eigen::VectorXd& x, const Eigen::VectorXd& g_of_x) override;
+  Status FindStep(const Eigen::VectorXd& x, Eigen::VectorXd* all, Eigen::VectorXd* step);
+  Eigen::VectorXd MovedBy(const Eigen::VectorXd& all, const Eigen::VectorXd& step,
+                          double part) const;
   Status Try(const Eigen::VectorXd& all, const Eigen::VectorXd& step, double part,
              Eigen::VectorXd* g_of_x, double* energy);
 
