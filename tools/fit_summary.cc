@@ -27,7 +27,7 @@ std::string Plural(long count, const std::string& noun) {
 /// The rule that made them; where they are free, what they start from.
 std::string ParametersText(const CurveFit& fit) {
   const FitSpec& spec = fit.spec();
-  const std::string rule = spec.parameters.has_value() ? ToString(*spec.parameters) : "given";
+  std::string rule = spec.parameters.has_value() ? ToString(*spec.parameters) : "given";
   if (!fit.has_free_parameters()) return rule;
   std::string start = rule;
   if (spec.start_points.size() > 0) {

@@ -97,11 +97,12 @@ void ExpectEndsHonestly(const Problem& problem) {
     ASSERT_EQ(WhyUnsupported(problem, solver), "");
     SolverTrial trial(problem, solver, {200});
     ASSERT_TRUE(trial.x.allFinite());
-    const double start = trial.context.Energy(Objective(&problem, nullptr).start());
+    const Objective objective(&problem, nullptr);
+    const double start = trial.context.Energy(objective.start());
     const double end = trial.context.Energy(trial.x);
     ASSERT_TRUE(std::isfinite(start));
     // Points inside are of size 1: a start that is best already may move by its rounding.
-    const double size = Objective(&problem, nullptr).ResidualSize(problem.start());
+    const double size = objective.ResidualSize(objective.start());
     const double noise =
         Objective::EnergyRoundingFloor(start, size) + std::pow(16 * kEps * size, 2);
     EXPECT_LE(end, start + noise) << ToString(trial.outcome.reason);
