@@ -88,6 +88,23 @@ class FreeFamily final : public BlockFamily {
     return MakeFreeCostFunction(site);
   }
 
+  const Points& points() const { return sites_.points; }  ///< Q, scaled.
+  /// Block `block` at x for a kernel's loops.
+  template <typename Kernel>
+  typename Kernel::Block BlockOf(const Kernel& kernel, const Eigen::VectorXd& x, int block) const {
+    const int parameter = setting_.parameter_offset + block;
+    return kernel.MakeBlock(x[parameter], &sites_.points(block, 0), root_weights_[block],
+                            parameter);
+  }
+
+  /// Loss and its first two derivatives; the identity without one, and where there is no number.
+  void Loss(double squared_norm, double* rho) const {
+    rho[0] = squared_norm;
+    rho[1] = 1.0;
+    rho[2] = 0.0;
+    if (loss() != nullptr && std::isfinite(squared_norm)) loss()->Evaluate(squared_norm, rho);
+  }
+
  private:
   CurvePlace Place(const Eigen::VectorXd& x, int block) const {
     return PlaceOnCurve(*setting_.basis, x[setting_.parameter_offset + block]);
@@ -102,20 +119,6 @@ class FreeFamily final : public BlockFamily {
       if (p == 3 && d == 3) return body(FreeKernel<Functor, 3, 3>(setting_, functor_));
     }
     return body(FreeKernel<Functor, -1, -1>(setting_, functor_));
-  }
-
-  template <typename Kernel>
-  typename Kernel::Block BlockOf(const Kernel& kernel, const Eigen::VectorXd& x, int block) const {
-    const int parameter = setting_.parameter_offset + block;
-    return kernel.MakeBlock(x[parameter], &sites_.points(block, 0), root_weights_[block],
-                            parameter);
-  }
-
-  void Loss(double squared_norm, double* rho) const {
-    rho[0] = squared_norm;
-    rho[1] = 1.0;
-    rho[2] = 0.0;
-    if (loss() != nullptr && std::isfinite(squared_norm)) loss()->Evaluate(squared_norm, rho);
   }
 
   bool DoEvaluate(const Eigen::VectorXd& x, int begin, int end, double* energy,

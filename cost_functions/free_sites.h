@@ -10,12 +10,14 @@ namespace batten {
 
 /// Data points whose parameters are variables: t_i stands at x[parameter_offset + i], and
 /// E = sum_i w_i |C(t_i) - Q_i|^2. What methods that know this structure work on instead of single
-/// residual blocks.
+/// residual blocks. Where parameters are projected, t_i is the foot point instead, and methods keep
+/// it at parameter_offset + i of a vector of their own, behind the control points.
 struct FreeSites {
   const BsplineBasis* basis = nullptr;
   int dimension = 0;
   int control_point_offset = 0;
   int parameter_offset = 0;
+  bool projected = false;
   Points points;            ///< Q, scaled as inside, m x d.
   Eigen::VectorXd weights;  ///< w_i >= 0, the term's weight in them.
 };

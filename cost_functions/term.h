@@ -18,6 +18,7 @@ struct TermInfo {
   bool affine = false;              ///< Residual affine in the control points, coordinates alike.
   std::vector<OptionInfo> options;  ///< Its own; every term also has CommonTermOptions().
   bool free_parameters = false;     ///< Needs parameters that are variables.
+  bool foot_points = false;         ///< Needs parameters that are projected: always foot points.
 };
 
 /// weight=1, loss=none|huber|cauchy|tukey|soft_l1, loss_scale=1 (in units of the data's size).

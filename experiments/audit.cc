@@ -183,6 +183,7 @@ AuditReport Audit(const AuditedFit& fit) {
   // E(r + delta) - E(r) = 2 r'W delta + delta'W delta <= 2 |r| |delta| + |delta|^2 in W's norm.
   const Real delta = std::sqrt(sums.squared_rounding);
   report.energy_floor = static_cast<double>(2 * std::sqrt(sums.energy) * delta + delta * delta);
+  if (fit.at_foot_points) AuditFeet(fit, &report);
   report.rms_distance = m == 0 ? 0.0 : static_cast<double>(std::sqrt(sums.squared_distance / m));
   report.max_distance = static_cast<double>(std::sqrt(sums.largest));
   return report;
@@ -218,6 +219,11 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
   const double gradient_allowed = (kRoundings + report.most_summands) * report.gradient_floor;
   if (!(std::abs(claim.gradient_norm - report.gradient_norm) <= gradient_allowed)) {
     return Fails("|g|", claim.gradient_norm, report.gradient_norm, gradient_allowed);
+  }
+  if (!(report.foot_excess <= report.foot_allowed)) {
+    return {false, "says that points are compared at their feet, but the audit finds one that is " +
+                       Number(report.foot_excess) + " nearer to another point of the curve" +
+                       " (allowed: " + Number(report.foot_allowed) + ")"};
   }
   if (!claim.minimum) return {true, ""};
   const double target = claim.gradient_target + kRoundings * report.gradient_floor;

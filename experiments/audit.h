@@ -27,6 +27,8 @@ struct AuditedFit {
   std::vector<double> weights;         // m, or empty: all 1
   /// Of free parameters, m; empty: they are fixed. Those past an end are given as that end.
   std::vector<ParameterState> parameter_states;
+  /// The parameters are said to be the foot points, which is checked.
+  bool at_foot_points = false;
   /// Of free ones: |g| is the gradient in (P, length * t), all of one unit.
   double length = 1.0;
 };
@@ -45,10 +47,17 @@ struct AuditReport {
       0.0;                    // and in |g|: one rounding of each number, all in the worst direction
   double rms_distance = 0.0;  // over the points, at their parameters, not weighted
   double max_distance = 0.0;
+  /// Of parameters that are to be foot points: the largest by which a sampled point of the curve is
+  /// nearer to a data point than C(t) is, and what rounding allows of it.
+  double foot_excess = 0.0;
+  double foot_allowed = 0.0;
   int num_points = 0;     // m
   int most_summands = 0;  // largest number of points that one control point moves
 };
 AuditReport Audit(const AuditedFit& fit);
+/// Fills in foot_excess and foot_allowed: plain comparisons with points sampled on every span, as
+/// many as a bound of the work leaves.
+void AuditFeet(const AuditedFit& fit, AuditReport* report);
 
 /// What a run claims about its end.
 struct Claim {

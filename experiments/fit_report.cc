@@ -12,22 +12,34 @@
 namespace batten {
 namespace {
 
+/// The term that is the distance from the data and nothing else.
+const char* DistanceTerm(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kFree:
+      return "free_parameter";
+    case ParameterKind::kProjected:
+      return "foot_point";
+    default:
+      return "interpolation";
+  }
+}
+
 /// What the terms of `problem` together weigh; NaN if the audit does not apply: it knows distances
 /// from the data without loss, where no constraint holds more than parameters.
 double DistanceWeight(const Problem& problem) {
   const CurveFit* fit = problem.curve_fit();
-  const bool is_free = fit != nullptr && fit->has_free_parameters();
+  const bool is_fixed = fit != nullptr && fit->spec().parameter_kind == ParameterKind::kFixed;
   bool plain = fit != nullptr;
   double weight = 0.0;
   for (const Problem::TermInstance& term : problem.terms()) {
     NameSpec name;
     std::string error;
     plain = plain && ParseNameSpec(term.name, &name, &error) &&
-            name.name == (is_free ? "free_parameter" : "interpolation") &&
-            term.family->loss() == nullptr;
+            name.name == DistanceTerm(fit->spec().parameter_kind) && term.family->loss() == nullptr;
     weight += term.family->weight();
   }
-  plain = plain && (is_free ? FreeView::Make(problem) != nullptr : problem.elimination().trivial());
+  plain =
+      plain && (is_fixed ? problem.elimination().trivial() : FreeView::Make(problem) != nullptr);
   return plain ? weight : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -63,6 +75,7 @@ AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double
   plain.points = copy(fit.data().points);
   plain.parameters = copy(fit.Parameters(x));
   plain.parameter_states = ParameterStates(problem, x);
+  plain.at_foot_points = fit.is_projected();
   plain.length = problem.units().length;
   if (fit.data().weights.has_value()) plain.weights = copy(*fit.data().weights);
   if (term_weight != 1.0) {

@@ -10,16 +10,6 @@
 
 namespace batten {
 
-const char* ToString(ParameterKind kind) {
-  return kind == ParameterKind::kFixed ? "fixed" : "free";
-}
-
-bool FromString(const std::string& text, ParameterKind* kind) {
-  if (text != "fixed" && text != "free") return false;
-  *kind = text == "fixed" ? ParameterKind::kFixed : ParameterKind::kFree;
-  return true;
-}
-
 Points CurveFit::ControlPoints(const Eigen::VectorXd& x) const {
   const int n = basis_->num_control_points();
   Points points(n, dimension());
@@ -48,13 +38,6 @@ Eigen::VectorXd CurveFit::Variables(const Points& control_points, const Eigen::V
   Eigen::VectorXd x(points.size() + t.size());
   x << points, t;
   return x;
-}
-
-Eigen::VectorXd CurveFit::Parameters(const Eigen::VectorXd& x) const {
-  if (!has_free_parameters()) return parameters_;
-  Eigen::VectorXd t = x.segment(setting_.parameter_offset, parameters_.size());
-  for (double& value : t) value = basis_->Wrap(value);
-  return t;
 }
 
 BsplineCurve CurveFit::Curve(const Eigen::VectorXd& x) const {
@@ -205,34 +188,6 @@ bool CurveFit::Scale(std::string* error) {
   return true;
 }
 
-bool CurveFit::CheckEnds(std::string* error) const {
-  if (!spec_.hold_ends) return true;
-  if (spec_.parameter_kind == ParameterKind::kFree && !spec_.closed) return true;
-  *error = std::string("ends are to be held, but ") +
-           (spec_.closed ? "the curve is closed" : "the parameters are fixed");
-  return false;
-}
-
-/// Variables behind the control points.
-bool CurveFit::AddParameters(Problem* problem, std::string* error) {
-  setting_.parameter_offset = problem->num_variables();
-  const auto last = parameters_.size() - 1;
-  if (spec_.hold_ends) {
-    parameters_[0] = basis_->domain_begin();
-    parameters_[last] = basis_->domain_end();
-  }
-  problem->AddVariables("parameters", parameters_);
-  if (!spec_.hold_ends) return true;
-  const auto held = [&](Eigen::Index i) {
-    LinearConstraint constraint;
-    constraint.name = "t_" + std::to_string(i) + " held";
-    constraint.coefficients = {{setting_.parameter_offset + static_cast<int>(i), 1.0}};
-    constraint.value = parameters_[i];
-    return constraint;
-  };
-  return problem->SetLinearConstraints({held(0), held(last)}, error);
-}
-
 std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
   std::unique_ptr<CurveFit> fit(new CurveFit(std::move(data), std::move(spec)));
   if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error) || !fit->PlaceParameters(error)) {
@@ -240,7 +195,10 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   }
   const bool is_free = fit->spec_.parameter_kind == ParameterKind::kFree;
   if (fit->spec_.terms.empty()) {
-    fit->spec_.terms.push_back({is_free ? "free_parameter" : "interpolation", {}, nullptr});
+    const char* const usual = fit->is_projected() ? "foot_point"
+                              : is_free           ? "free_parameter"
+                                                  : "interpolation";
+    fit->spec_.terms.push_back({usual, {}, nullptr});
   }
   if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->Scale(error)) return nullptr;
   const Points start = fit->StartPoints();
@@ -263,6 +221,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     const Term* term = nullptr;
     OptionValues options;
     if (!TermRegistry::Global().Resolve(name, &term, &options, error)) return nullptr;
+    if (!fit->CheckKind(name, *term, error)) return nullptr;
     if (!meanings.emplace(term, options.ToText()).second) {
       *error = "term " + name.ToString() + " is given twice; give it once, with twice the weight";
       return nullptr;

@@ -24,8 +24,9 @@ inline constexpr double kSmallestUnit = 1e-270;
 /// Least of the largest weight of a term: with none there is nothing to fit.
 inline constexpr double kSmallestTermWeight = 1e-30;
 
-/// What the data's parameters are: given once and for all, or variables beside the control points.
-enum class ParameterKind { kFixed, kFree };
+/// What the data's parameters are: given once and for all, variables beside the control points, or
+/// always the foot points on the curve, whose control points are the only variables then.
+enum class ParameterKind { kFixed, kFree, kProjected };
 const char* ToString(ParameterKind kind);
 bool FromString(const std::string& text, ParameterKind* kind);
 
@@ -42,7 +43,8 @@ struct FitSpec {
   std::vector<double> given_knots;                  // not empty: instead of the rule
   std::optional<std::pair<double, double>> domain;  // with given parameters; default: their range,
                                                     // closed: [0, 1]
-  std::vector<NameSpec> terms;                      // empty: interpolation; free: free_parameter
+  std::vector<NameSpec> terms;                      // empty: interpolation; free: free_parameter;
+                                                    // projected: foot_point
   /// data: on the polyline through the data; centroid: all in one point; circle, ellipse: around
   /// the data, of the size of their spread (principal axes).
   std::string start = "data";
@@ -65,7 +67,8 @@ class CurveFit {
   /// t_i of data point i; of free ones where they start.
   const Eigen::VectorXd& parameters() const { return parameters_; }
   bool has_free_parameters() const { return setting_.parameter_offset >= 0; }
-  /// t_i at all variables x, in the domain.
+  bool is_projected() const { return spec_.parameter_kind == ParameterKind::kProjected; }
+  /// t_i at all variables x, in the domain: of projected ones the feet.
   Eigen::VectorXd Parameters(const Eigen::VectorXd& x) const;
   int dimension() const { return static_cast<int>(data_.points.cols()); }
   /// Longest side of the data's box, in the user's units; 1 if all points are equal.
@@ -89,8 +92,10 @@ class CurveFit {
   bool PlaceParameters(std::string* error);
   bool Scale(std::string* error);
   bool CheckEnds(std::string* error) const;
+  bool CheckKind(const NameSpec& name, const Term& term, std::string* error) const;
   bool AddParameters(Problem* problem, std::string* error);
   bool CheckStart(std::string* error) const;
+  Eigen::VectorXd FeetOf(const Eigen::VectorXd& x) const;
   Points StartPoints() const;
   Points StartOnPolyline() const;
   /// Free parameters start at the feet on a start curve that does not know the data's order.

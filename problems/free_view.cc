@@ -10,6 +10,7 @@ bool OnlyParametersAreHeld(const Problem& problem, const FreeSites& sites,
   if (problem.has_bounds()) return false;
   if (problem.elimination().trivial()) return true;
   const auto& z = problem.elimination().z();
+  if (sites.projected) return false;
   held->assign(static_cast<std::size_t>(sites.weights.size()), 0);
   for (int row = 0; row < z.rows(); ++row) {
     const auto entries = z.outerIndexPtr()[row + 1] - z.outerIndexPtr()[row];
@@ -23,6 +24,17 @@ bool OnlyParametersAreHeld(const Problem& problem, const FreeSites& sites,
 }
 
 }  // namespace
+
+Eigen::VectorXd FreeView::WithParameters(const Eigen::VectorXd& x) const {
+  if (!projected()) return x;
+  Eigen::VectorXd all(x.size() + num_points());
+  all << x, Eigen::VectorXd::Constant(num_points(), sites_->basis->domain_begin());
+  return all;
+}
+
+Eigen::VectorXd FreeView::WithoutParameters(const Eigen::VectorXd& all) const {
+  return projected() ? all.head(sites_->parameter_offset) : all;
+}
 
 std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {
   std::unique_ptr<FreeView> view(new FreeView);

@@ -11,18 +11,26 @@ namespace batten {
 
 /// A problem E(P, t) = sum_i w_i |C(t_i) - Q_i|^2 + ||A P - B||^2 with the parameters t as
 /// variables, as methods see it that know this structure: one free_parameter term, any number of
-/// terms that are compiled rows, and no constraints but parameters that are held.
+/// terms that are compiled rows, and no constraints but parameters that are held. Or the same with
+/// t projected (one foot_point term): P alone is variable then, and methods keep t behind it in
+/// vectors of their own.
 class FreeView {
  public:
   /// Null for any other problem.
   static std::unique_ptr<FreeView> Make(const Problem& problem);
 
   const FreeSites& sites() const { return *sites_; }
+  bool projected() const { return sites_->projected; }
   int num_points() const { return static_cast<int>(sites_->weights.size()); }  // m
   int num_control_points() const { return sites_->basis->num_control_points(); }
   int dimension() const { return sites_->dimension; }
   /// Whether t_i is given by a constraint.
   bool is_held(int i) const { return !held_.empty() && held_[static_cast<std::size_t>(i)] != 0; }
+  /// Control points and parameters behind all variables x of the problem. Projected ones are as
+  /// they may be: they are to be searched.
+  Eigen::VectorXd WithParameters(const Eigen::VectorXd& x) const;
+  /// The problem's variables among these.
+  Eigen::VectorXd WithoutParameters(const Eigen::VectorXd& all) const;
   /// A'A and A'B of the other terms; null where there are none.
   const NormalBand* other_terms() const { return other_terms_.get(); }
 

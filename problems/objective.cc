@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "problems/fit_problem.h"
+
 namespace batten {
 namespace {
 
@@ -18,7 +20,15 @@ Objective::Objective(const Problem* problem, EvaluationMonitor* monitor, Options
       monitor_(monitor),
       options_(options),
       num_variables_(problem->elimination().num_free(problem->num_variables())),
-      view_(options.compile ? CurveView::Make(*problem, monitor) : nullptr) {}
+      view_(options.compile ? CurveView::Make(*problem, monitor) : nullptr),
+      projects_(problem->curve_fit() != nullptr && problem->curve_fit()->is_projected()) {}
+
+bool Objective::AllowProjection(const Eigen::VectorXd& x) {
+  if (!projects_ || monitor_ == nullptr) return true;
+  if (projected_at_.size() == x.size() && projected_at_ == x) return true;
+  projected_at_ = x;
+  return Allow(Evaluation::kProjection, &x);
+}
 
 const FreeView* Objective::free_view() const {
   if (!free_view_is_made_) free_view_ = FreeView::Make(*problem_);
@@ -54,7 +64,7 @@ Status Objective::EvaluateRows(const Eigen::VectorXd& x, double* energy,
 }
 
 Status Objective::Energy(const Eigen::VectorXd& x, double* energy) {
-  if (!Allow(Evaluation::kEnergy, &x)) return Status::kStop;
+  if (!AllowAt(Evaluation::kEnergy, x)) return Status::kStop;
   if (view_ != nullptr) return EvaluateRows(x, energy, nullptr);
   return problem_->elimination().trivial() ? EvaluateTerms(x, energy, nullptr)
                                            : EvaluateTerms(Expand(x), energy, nullptr);
@@ -62,7 +72,7 @@ Status Objective::Energy(const Eigen::VectorXd& x, double* energy) {
 
 Status Objective::EnergyAndGradient(const Eigen::VectorXd& x, double* energy,
                                     Eigen::VectorXd* gradient) {
-  if (!Allow(Evaluation::kEnergy, &x) || !Allow(Evaluation::kGradient, &x)) return Status::kStop;
+  if (!AllowAt(Evaluation::kEnergy, x) || !Allow(Evaluation::kGradient, &x)) return Status::kStop;
   if (view_ != nullptr) return EvaluateRows(x, energy, gradient);
   if (problem_->elimination().trivial()) return EvaluateTerms(x, energy, gradient);
   Eigen::VectorXd full;
@@ -85,7 +95,7 @@ Status Objective::Gradient(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) 
 
 Status Objective::Jacobian(const Eigen::VectorXd& x, Eigen::VectorXd* residuals,
                            SparseRows* jacobian) {
-  if (!Allow(Evaluation::kJacobian, &x)) return Status::kStop;
+  if (!AllowAt(Evaluation::kJacobian, x)) return Status::kStop;
   const Eigen::VectorXd all = Expand(x);
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<Eigen::VectorXd> parts;
@@ -132,7 +142,7 @@ Status Objective::HessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& 
     if (status == Status::kOk) *product *= 2.0;
     return status;
   }
-  if (!Allow(Evaluation::kProduct, nullptr)) return Status::kStop;
+  if (!AllowProjection(x) || !Allow(Evaluation::kProduct, nullptr)) return Status::kStop;
   const LinearElimination& elimination = problem_->elimination();
   const Eigen::VectorXd all = elimination.Expand(x);
   const Eigen::VectorXd direction = elimination.ExpandDirection(v);
@@ -147,7 +157,7 @@ Status Objective::HessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& 
 
 Status Objective::PartialEnergy(const Eigen::VectorXd& x, int term, int begin, int end,
                                 double* energy) {
-  if (!Allow(Evaluation::kEnergy, &x)) return Status::kStop;
+  if (!AllowAt(Evaluation::kEnergy, x)) return Status::kStop;
   *energy = 0.0;
   return problem_->terms()[static_cast<std::size_t>(term)].family->Evaluate(Expand(x), begin, end,
                                                                             energy, nullptr);

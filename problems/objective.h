@@ -60,6 +60,10 @@ class Objective {
   bool Allow(Evaluation kind, const Eigen::VectorXd* x) {
     return monitor_ == nullptr || monitor_->Allow(kind, x);
   }
+  /// Where E is evaluated; projected parameters are projected there. Else as Allow.
+  bool AllowAt(Evaluation kind, const Eigen::VectorXd& x) {
+    return AllowProjection(x) && Allow(kind, &x);
+  }
 
   // Not counted: for run control and reports.
   /// Size below which |g| is noise: 4 eps times the norm of sum |J|'(|J||x| + |r|), doubled as the
@@ -74,6 +78,8 @@ class Objective {
   std::vector<double> TermEnergies(const Eigen::VectorXd& x) const;
 
  private:
+  /// Counts that the points are projected at x, once for all that is evaluated there.
+  bool AllowProjection(const Eigen::VectorXd& x);
   Status EvaluateTerms(const Eigen::VectorXd& all, double* energy, Eigen::VectorXd* gradient) const;
   Status EvaluateRows(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient) const;
 
@@ -82,6 +88,8 @@ class Objective {
   Options options_;
   int num_variables_;
   std::unique_ptr<CurveView> view_;
+  bool projects_;  // parameters are projected
+  Eigen::VectorXd projected_at_;
   mutable bool free_view_is_made_ = false;
   mutable std::unique_ptr<const FreeView> free_view_;
 };

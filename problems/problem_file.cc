@@ -137,7 +137,7 @@ bool ReadReference(const StrictObject& file, CatalogueEntry* entry) {
 
 bool ReadKind(const StrictObject& file, FitSpec* spec) {
   std::string kind = ToString(spec->parameter_kind);
-  return file.Word("parameter_kind", kOptional, {"fixed", "free"}, &kind) &&
+  return file.Word("parameter_kind", kOptional, {"fixed", "free", "projected"}, &kind) &&
          FromString(kind, &spec->parameter_kind) &&
          file.Flag("hold_ends", kOptional, &spec->hold_ends);
 }

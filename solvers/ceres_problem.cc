@@ -88,7 +88,7 @@ CeresProblem::CeresProblem(Objective* objective, Evaluation derivative, const Ei
 
 void CeresProblem::PrepareForEvaluation(bool evaluate_jacobians, bool /*new_evaluation_point*/) {
   if (stopped_) return;
-  stopped_ = !objective_->Allow(Evaluation::kEnergy, &state_) ||
+  stopped_ = !objective_->AllowAt(Evaluation::kEnergy, state_) ||
              (evaluate_jacobians && !objective_->Allow(derivative_, &state_));
 }
 

@@ -50,9 +50,11 @@ Eigen::Index FootIteration::num_mapped(const Eigen::VectorXd& /*x*/) const {
 }
 
 Status FootIteration::Complete(Eigen::VectorXd* x) {
+  // Projected parameters are no variables: the next step searches them.
+  if (objective()->free_view()->projected()) return Status::kOk;
   Eigen::VectorXd all = objective()->Expand(*x);
   const Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
-  if (status == Status::kOk) *x = objective()->problem().elimination().FreeVariables(all);
+  if (status == Status::kOk) *x = FreeVariablesOf(*objective(), all);
   return status;
 }
 
@@ -74,7 +76,11 @@ Status FootIteration::Try(const Eigen::VectorXd& all, const Eigen::VectorXd& ste
 Status FootIteration::FindStep(const Eigen::VectorXd& x, Eigen::VectorXd* all,
                                Eigen::VectorXd* step) {
   if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
-  *all = objective()->Expand(x);
+  *all = AllWithParameters(*objective(), x);
+  if (objective()->free_view()->projected()) {
+    const Status status = ProjectParameters(objective(), context()->threads(), x, all);
+    if (status != Status::kOk) return status;
+  }
   return MakeStep(*all, step) ? Status::kOk : Status::kNonFinite;
 }
 
@@ -83,7 +89,7 @@ Eigen::VectorXd FootIteration::MovedBy(const Eigen::VectorXd& all, const Eigen::
                                        double part) const {
   Eigen::VectorXd next = all;
   next.segment(objective()->free_view()->sites().control_point_offset, step.size()) += part * step;
-  return objective()->problem().elimination().FreeVariables(next);
+  return FreeVariablesOf(*objective(), next);
 }
 
 Status FootIteration::MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {

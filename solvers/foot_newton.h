@@ -14,6 +14,9 @@ class FootNewtonSolver final : public JointDescent {
   explicit FootNewtonSolver(const OptionValues& options)
       : JointDescent(FootModelKind::kNewton), longest_wait_(options.Integer("longest_wait")) {}
   SolverInfo Info() const override { return ClassInfo(); }
+  std::string WhyUnsupported(const Objective& objective) const override {
+    return WhyNoFreeParameters(objective, Info().name);
+  }
   std::vector<double> State() const override;
   void Restore(const std::vector<double>& state) override;
 

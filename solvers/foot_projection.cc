@@ -4,6 +4,15 @@
 
 namespace batten {
 
+Eigen::VectorXd AllWithParameters(const Objective& objective, const Eigen::VectorXd& x) {
+  return objective.free_view()->WithParameters(objective.Expand(x));
+}
+
+Eigen::VectorXd FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all) {
+  return objective.problem().elimination().FreeVariables(
+      objective.free_view()->WithoutParameters(all));
+}
+
 Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorXd& free,
                          Eigen::VectorXd* all) {
   if (!objective->Allow(Evaluation::kProjection, &free)) return Status::kStop;

@@ -5,8 +5,13 @@
 
 namespace batten {
 
-/// Sets the parameters among all variables `all` to the foot points on the curve of its control
-/// points, held ones excepted; counted as one projection at `free`. kNonFinite: `all` is no curve.
+/// Control points and parameters at the free variables x, and back. Where parameters are projected
+/// they stand behind the problem's variables, and are to be searched.
+Eigen::VectorXd AllWithParameters(const Objective& objective, const Eigen::VectorXd& x);
+Eigen::VectorXd FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all);
+
+/// Sets the parameters in `all` to the foot points on the curve of its control points, held ones
+/// excepted; counted as one projection at the free variables `free`. kNonFinite: `all` is no curve.
 Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorXd& free,
                          Eigen::VectorXd* all);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "problems/fit_problem.h"
+#include "solvers/foot_projection.h"
 
 namespace batten {
 namespace {
@@ -19,13 +20,20 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   if (objective.free_view() != nullptr) return "";
   const CurveFit* fit = objective.problem().curve_fit();
   if (fit == nullptr) return name + " needs a curve with free parameters; use lbfgs";
-  if (!fit->has_free_parameters()) {
+  if (!fit->has_free_parameters() && !fit->is_projected()) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
   if (objective.problem().has_bounds()) return WhyNoBounds(objective, name);
   return name +
-         " takes one free_parameter term without loss, terms that are affine, and no constraints "
+         " takes one free_parameter or foot_point term without loss, terms that are affine, and no "
+         "constraints "
          "but parameters that are held; use lbfgs";
+}
+
+std::string WhyNoFreeParameters(const Objective& objective, const std::string& name) {
+  std::string why = WhyNoFreeView(objective, name);
+  if (!why.empty() || !objective.free_view()->projected()) return why;
+  return name + " moves parameters by itself, but here they are projected; use newton or lm_schur";
 }
 
 std::string JointDescent::WhyUnsupported(const Objective& objective) const {
@@ -60,16 +68,18 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   there_ = std::make_unique<FootModel>(view, context()->threads());
   damping_ = kFirstDamping;
   growth_ = 2.0;
-  given_ = objective()->Expand(*x);
+  given_ = AllWithParameters(*objective(), *x);
+  Status status = Project(&given_);
+  if (status != Status::kOk) return Ended(status);
   Eigen::VectorXd all = given_;
-  Status status = CompleteStart(*x, &all);
+  if (!view.projected()) status = CompleteStart(*x, &all);
   if (status == Status::kOk) status = GoTo(all, x);
   if (status != Status::kOk) return Ended(status);
   return std::nullopt;
 }
 
 Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
-  const Eigen::VectorXd free = objective()->problem().elimination().FreeVariables(all);
+  const Eigen::VectorXd free = FreeVariablesOf(*objective(), all);
   if (!objective()->Allow(Evaluation::kJacobian, &free)) return Status::kStop;
   all_ = all;
   if (!SumHere(kind_)) return Status::kNonFinite;
@@ -77,17 +87,29 @@ Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
   return Status::kOk;
 }
 
-bool JointDescent::Propose() {
-  if (!here_->Factor(damping_)) return false;
+Status JointDescent::Project(Eigen::VectorXd* all) {
+  if (!objective()->free_view()->projected()) return Status::kOk;
+  const Eigen::VectorXd free = FreeVariablesOf(*objective(), *all);
+  // Not from where the last step leaves them: what is found is a function of the control points.
+  *all = AllWithParameters(*objective(), free);
+  return ProjectParameters(objective(), context()->threads(), free, all);
+}
+
+Status JointDescent::Propose() {
+  if (!here_->Factor(damping_)) return Status::kNonFinite;
   here_->Solve(&step_);
-  if (!step_.allFinite()) return false;
+  if (!step_.allFinite()) return Status::kNonFinite;
   decrease_ = here_->Move(all_, step_, &next_);
-  return next_.allFinite() && Complete(&next_);
+  if (!next_.allFinite()) return Status::kNonFinite;
+  if (objective()->free_view()->projected()) return Project(&next_);
+  return Complete(&next_) ? Status::kOk : Status::kNonFinite;
 }
 
 std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
   for (int tried = 0; tried < kMostTries; ++tried) {
-    if (!Propose()) {
+    const Status proposed = Propose();
+    if (proposed == Status::kStop) return Ended(proposed);
+    if (proposed == Status::kNonFinite) {
       // Newton's Hessian need not be positive definite; Gauss and Newton's is.
       if (kind_ == FootModelKind::kNewton && here_->kind() == FootModelKind::kNewton) {
         if (!SumHere(FootModelKind::kTangent)) return Ended(Status::kNonFinite);
@@ -97,7 +119,7 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
       }
       continue;
     }
-    const Eigen::VectorXd free = objective()->problem().elimination().FreeVariables(next_);
+    const Eigen::VectorXd free = FreeVariablesOf(*objective(), next_);
     if (!objective()->Allow(Evaluation::kJacobian, &free)) return Ended(Status::kStop);
     const double before = here_->energy();
     const bool finite = there_->Sum(next_, kind_, ParameterDamping());

@@ -19,7 +19,8 @@ class JointDescent : public Stepper {
 
  protected:
   explicit JointDescent(FootModelKind kind) : kind_(kind) {}
-  /// Called with all variables after each move, which it may go on with. False: no finite number.
+  /// Called with control points and parameters after each move, which it may go on with, unless
+  /// parameters are projected: they are searched then. False: no finite number.
   virtual bool Complete(Eigen::VectorXd* /*all*/) { return true; }
   /// Called instead at the start, which has the free variables x.
   virtual Status CompleteStart(const Eigen::VectorXd& /*x*/, Eigen::VectorXd* all) {
@@ -29,21 +30,23 @@ class JointDescent : public Stepper {
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   FootModel* trial() { return there_.get(); }  ///< Free to be used in Complete.
   double energy() const { return here_->energy(); }
-  /// Goes on from other variables, of which *x are the free ones.
+  /// Goes on from other control points and parameters, of which *x are the free variables.
   Status GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x);
 
  private:
   bool SumHere(FootModelKind kind);
   double ParameterDamping() const;
   double Noise(double energy) const;
-  /// Leaves the point to be tried in next_; false where the model has no step.
-  bool Propose();
+  /// Leaves the point to be tried in next_; kNonFinite where the model has no step.
+  Status Propose();
+  /// Searches projected parameters anew.
+  Status Project(Eigen::VectorXd* all);
 
   FootModelKind kind_;
   double damping_ = 0.0;
   double growth_ = 2.0;
   double decrease_ = 0.0;  // foretold
-  Eigen::VectorXd all_;    // all variables at x
+  Eigen::VectorXd all_;    // control points and parameters at x
   Eigen::VectorXd given_;  // those that the start was given, before it moved them
   Eigen::VectorXd next_;
   Eigen::VectorXd step_;
@@ -53,6 +56,8 @@ class JointDescent : public Stepper {
 
 /// What a free problem's view is missing, as one sentence; empty: nothing.
 std::string WhyNoFreeView(const Objective& objective, const std::string& name);
+/// The same for methods that move parameters by themselves: these must not be projected.
+std::string WhyNoFreeParameters(const Objective& objective, const std::string& name);
 
 }  // namespace batten
 

@@ -23,7 +23,9 @@ SolverInfo FreeNewton::Info() const { return NewtonSolver::ClassInfo(); }
 
 std::string NewtonSolver::WhyUnsupported(const Objective& objective) const {
   const CurveFit* fit = objective.problem().curve_fit();
-  if (fit != nullptr && fit->has_free_parameters()) return WhyNoFreeView(objective, "newton");
+  if (fit != nullptr && (fit->has_free_parameters() || fit->is_projected())) {
+    return WhyNoFreeView(objective, "newton");
+  }
   return WhyNoUnboundedCurveView(objective, "newton");
 }
 

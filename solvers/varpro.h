@@ -12,6 +12,9 @@ class VarproSolver final : public JointDescent {
   static SolverInfo ClassInfo();
   explicit VarproSolver(const OptionValues& /*options*/) : JointDescent(FootModelKind::kTangent) {}
   SolverInfo Info() const override { return ClassInfo(); }
+  std::string WhyUnsupported(const Objective& objective) const override {
+    return WhyNoFreeParameters(objective, Info().name);
+  }
 
  private:
   bool Complete(Eigen::VectorXd* all) override;

@@ -178,7 +178,7 @@ std::vector<FlagInfo> FitRequestFlags() {
           TextFlag("domain", "A,B", kAllowedDomain),
           TextFlag("terms", "TERMS", "terms of batten list terms, separated by commas"),
           TextFlag("start", "START", "data, centroid, circle, ellipse, or a file of batten fit"),
-          WordFlag("parameter_kind", {"fixed", "free"}),
+          WordFlag("parameter_kind", {"fixed", "free", "projected"}),
           SwitchFlag("hold_ends")};
 }
 

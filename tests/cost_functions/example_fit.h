@@ -27,6 +27,7 @@ inline const double kDifferenceTolerance = 10.0 * kStep * kStep;
 class ExampleFit {
  public:
   static constexpr int kOffset = 3;
+  static constexpr double kRadius = 20.0;  ///< Of a round curve.
 
   ExampleFit(BsplineBasis spline, int dimension, int num_points, bool weighted,
              std::mt19937* random)
@@ -61,6 +62,24 @@ class ExampleFit {
     for (int i = 0; i < sites.size; ++i) {
       const int span = spans[(*random)() % spans.size()];
       x[setting.parameter_offset + i] = InSpan(basis, span, RandomBetween(0.05, 0.95, random));
+    }
+    return x;
+  }
+  /// A wide and nearly round curve that passes the data, which are outside of it: each foot is the
+  /// only one, and far from centres of curvature. In more than two dimensions it is a flat one; in
+  /// one it runs over the data, so that distances are 0.
+  Eigen::VectorXd RoundVariables(std::mt19937* random) const {
+    // The data are within 1 of the origin.
+    const double beside = setting.dimension == 1 ? -kRadius : 2.0;
+    Eigen::VectorXd x = RandomVariables(random);
+    for (int j = 0; j < basis.num_control_points(); ++j) {
+      const double part = (basis.Greville(j) - basis.domain_begin()) / basis.domain_length();
+      const double place[] = {kRadius * (1.0 + std::cos(2.0 * M_PI * part)) + beside,
+                              kRadius * std::sin(2.0 * M_PI * part), 0.0, 0.0};
+      for (int c = 0; c < setting.dimension; ++c) {
+        double& entry = x[kOffset + j * setting.dimension + c];
+        entry = place[c] + 0.2 * entry;
+      }
     }
     return x;
   }

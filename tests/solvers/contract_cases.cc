@@ -161,6 +161,21 @@ std::vector<ContractProblem> FreeProblems() {
   };
 }
 
+std::vector<ContractProblem> ProjectedProblems() {
+  return {
+      {"projected, closed from a circle",
+       [] {
+         return MakeFit(WithoutWeights(MakeNoisyBean(60, 2, 311)), MakeProjectedSpec(3, true, 12));
+       }},
+      {"projected, open from the data, weighted",
+       [] { return MakeFit(MakeNoisyBean(40, 2, 312), MakeProjectedSpec(3, false, 9, "data")); }},
+      {"projected, three dimensions from an ellipse, weighted",
+       [] {
+         return MakeFit(MakeNoisyBean(50, 3, 313), MakeProjectedSpec(4, true, 11, "ellipse"));
+       }},
+  };
+}
+
 std::vector<SupportedProblem> SupportedProblems(const std::string& registered) {
   std::vector<SupportedProblem> supported;
   const auto add = [&supported](const std::string& solver, const ContractProblem& row) {
@@ -171,6 +186,7 @@ std::vector<SupportedProblem> SupportedProblems(const std::string& registered) {
   const std::string usual = SolverRegistry::Global().UsualName(registered);
   for (const ContractProblem& row : TwoProblems()) add(usual, row);
   for (const ContractProblem& row : FreeProblems()) add(FreeName(registered), row);
+  for (const ContractProblem& row : ProjectedProblems()) add(FreeName(registered), row);
   return supported;
 }
 

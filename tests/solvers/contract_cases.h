@@ -86,13 +86,16 @@ std::vector<ContractProblem> TwoProblems();
 /// held and with another term.
 std::vector<ContractProblem> FreeProblems();
 
+/// Parameters are the foot points: closed and open, 2-D and 3-D, weighted.
+std::vector<ContractProblem> ProjectedProblems();
+
 struct SupportedProblem {
   std::string solver;  // as it is written for this problem
   std::string name;
   std::unique_ptr<Problem> problem;
 };
 
-/// Those of TwoProblems() and FreeProblems() that a registered solver takes.
+/// Those of TwoProblems(), FreeProblems() and ProjectedProblems() that a registered solver takes.
 std::vector<SupportedProblem> SupportedProblems(const std::string& registered);
 
 }  // namespace batten

@@ -34,6 +34,12 @@ void ExpectEndsLower(const SupportedProblem& row, bool is_fast) {
   EXPECT_LE(last, std::max(1e-10 * first, floor));
 }
 
+std::vector<ContractProblem> MovingProblems() {
+  std::vector<ContractProblem> problems = FreeProblems();
+  for (ContractProblem& row : ProjectedProblems()) problems.push_back(std::move(row));
+  return problems;
+}
+
 TEST_P(EverySolver, EndsFreeFitsWhereTheJointGradientIsSmall) {
   int num_runs = 0;
   for (const SupportedProblem& row : SupportedProblems(GetParam())) {
@@ -47,8 +53,23 @@ TEST_P(EverySolver, EndsFreeFitsWhereTheJointGradientIsSmall) {
   }
 }
 
+TEST_P(EverySolver, EndsProjectedFitsWhereTheGradientIsSmall) {
+  int num_runs = 0;
+  for (const SupportedProblem& row : SupportedProblems(GetParam())) {
+    if (!row.problem->curve_fit()->is_projected()) continue;
+    SCOPED_TRACE(row.name);
+    ++num_runs;
+    ExpectEndsLower(row, ReachesTheMinimum(GetParam()));
+  }
+  for (const char* known :
+       {"lbfgs", "ceres_lbfgs", "ceres_lm", "newton", "lm_schur", "gi", "pdm", "tdm", "sdm"}) {
+    if (GetParam() != known) continue;
+    EXPECT_EQ(num_runs, static_cast<int>(ProjectedProblems().size()));
+  }
+}
+
 TEST_P(EverySolver, ScalesFreeFitsExactlyWithPowersOfTwo) {
-  for (const ContractProblem& row : FreeProblems()) {
+  for (const ContractProblem& row : MovingProblems()) {
     const auto problem = row.make();
     if (!WhyUnsupported(*problem, free_name()).empty()) continue;
     SCOPED_TRACE(row.name);
@@ -66,11 +87,11 @@ TEST_P(EverySolver, ScalesFreeFitsExactlyWithPowersOfTwo) {
 }
 
 TEST_P(EverySolver, StaysAtTheMinimumOfAFreeFit) {
-  for (const ContractProblem& row : FreeProblems()) {
+  for (const ContractProblem& row : MovingProblems()) {
     const auto problem = row.make();
     if (!WhyUnsupported(*problem, free_name()).empty()) continue;
     SCOPED_TRACE(row.name);
-    const SolverTrial best(*problem, "foot_newton");
+    const SolverTrial best(*problem, "newton");
     ASSERT_TRUE(IsSuccess(best.outcome.reason)) << ToString(best.outcome.reason);
     TestContext context(*problem, {100, -1.0, false});
     Objective objective(problem.get(), &context);

@@ -73,7 +73,9 @@ void ForSupported(const std::string& registered, Test test) {
   }
 }
 
-bool IsFree(const Problem& problem) { return problem.curve_fit()->has_free_parameters(); }
+bool IsFree(const Problem& problem) {
+  return problem.curve_fit()->spec().parameter_kind != ParameterKind::kFixed;
+}
 
 TEST_P(EverySolver, LeavesAtTheIterateThatSaysStop) {
   ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {

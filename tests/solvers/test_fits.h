@@ -37,6 +37,16 @@ inline FitSpec MakeFreeSpec(int degree, bool closed, int control_points,
   return spec;
 }
 
+/// Of a fit whose parameters are always the foot points.
+inline FitSpec MakeProjectedSpec(int degree, bool closed, int control_points,
+                                 const std::string& start = "circle",
+                                 const std::string& terms = "foot_point") {
+  FitSpec spec = MakeSpec(degree, closed, control_points, terms);
+  spec.parameter_kind = ParameterKind::kProjected;
+  spec.start = start;
+  return spec;
+}
+
 /// A fit of points of data/, "animals/rhino_100.csv".
 inline std::unique_ptr<Problem> MakeFileFit(const std::string& path, FitSpec spec) {
   std::string error;

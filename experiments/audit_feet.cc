@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "experiments/audit.h"
+#include "experiments/audit_curve.h"
+
+namespace batten {
+namespace {
+
+/// Points of the curve, equally spaced in each span that is not empty: rows of d numbers.
+std::vector<double> SampleSpans(const AuditedFit& fit, int per_span, AuditCurve* curve) {
+  std::vector<double> samples;
+  const auto first = static_cast<std::size_t>(fit.degree);
+  for (std::size_t k = first; fit.knots[k] < curve->domain_end(); ++k) {
+    const double low = fit.knots[k];
+    const double length = fit.knots[k + 1] - low;
+    for (int s = 0; s < per_span && length > 0.0; ++s) {
+      curve->MoveTo(low + length * s / per_span);
+      for (int c = 0; c < fit.dimension; ++c) {
+        samples.push_back(static_cast<double>(curve->Coordinate(c)));
+      }
+    }
+  }
+  return samples;
+}
+
+double NearestDistance(const std::vector<double>& samples, const double* point, int d) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < samples.size(); s += static_cast<std::size_t>(d)) {
+    double squared = 0.0;
+    for (int c = 0; c < d; ++c) {
+      const double difference = samples[s + static_cast<std::size_t>(c)] - point[c];
+      squared += difference * difference;
+    }
+    nearest = std::min(nearest, squared);
+  }
+  return std::sqrt(nearest);
+}
+
+}  // namespace
+
+void AuditFeet(const AuditedFit& fit, AuditReport* report) {
+  // A feature of the curve narrower than 1 / 32 of a span can be overlooked.
+  constexpr double kMostPerSpan = 32.0;
+  constexpr double kMostComparisons = 1e9;
+  // Feet are certified to 1e-12 of the larger of size and distance.
+  constexpr double kAllowed = 2e-12;
+  AuditCurve curve(fit);
+  const auto m = static_cast<double>(fit.parameters.size());
+  const double affordable = kMostComparisons / (m * curve.num_control_points());
+  const auto per_span = static_cast<int>(std::clamp(affordable, 1.0, kMostPerSpan));
+  const std::vector<double> samples = SampleSpans(fit, per_span, &curve);
+  double largest = 0.0;
+  for (const double coordinate : samples) largest = std::max(largest, std::abs(coordinate));
+  for (const double coordinate : fit.points) largest = std::max(largest, std::abs(coordinate));
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const double* const point = &fit.points[i * static_cast<std::size_t>(fit.dimension)];
+    curve.MoveTo(fit.parameters[i]);
+    AuditCurve::Real squared = 0;
+    for (int c = 0; c < fit.dimension; ++c) {
+      const AuditCurve::Real difference = curve.Coordinate(c) - point[c];
+      squared += difference * difference;
+    }
+    const auto distance = static_cast<double>(std::sqrt(squared));
+    const double excess = distance - NearestDistance(samples, point, fit.dimension);
+    // Written so that NaN is not lost.
+    if (!(excess <= report->foot_excess)) report->foot_excess = excess;
+  }
+  report->foot_allowed = kAllowed * largest;
+}
+
+}  // namespace batten

@@ -1,0 +1,94 @@
+#include <string>
+
+#include "cost_functions/foot_feet.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+const char* ToString(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kFixed:
+      return "fixed";
+    case ParameterKind::kFree:
+      return "free";
+    case ParameterKind::kProjected:
+      return "projected";
+  }
+  return "unknown";
+}
+
+bool FromString(const std::string& text, ParameterKind* kind) {
+  for (const ParameterKind known :
+       {ParameterKind::kFixed, ParameterKind::kFree, ParameterKind::kProjected}) {
+    if (text != ToString(known)) continue;
+    *kind = known;
+    return true;
+  }
+  return false;
+}
+
+Eigen::VectorXd CurveFit::Parameters(const Eigen::VectorXd& x) const {
+  if (is_projected()) return FeetOf(x);
+  if (!has_free_parameters()) return parameters_;
+  Eigen::VectorXd t = x.segment(setting_.parameter_offset, parameters_.size());
+  for (double& value : t) value = basis_->Wrap(value);
+  return t;
+}
+
+/// As the term foot_point has them, in the domain.
+Eigen::VectorXd CurveFit::FeetOf(const Eigen::VectorXd& x) const {
+  const Points scaled = (data_.points.rowwise() -
+                         Eigen::Map<const Eigen::RowVectorXd>(setting_.center, dimension())) *
+                        setting_.scale;
+  Eigen::VectorXd all(x.size() + scaled.rows());
+  all.head(x.size()) = x;
+  FindFeet(*basis_, dimension(), setting_.control_point_offset, scaled, &all);
+  Eigen::VectorXd feet = all.tail(scaled.rows());
+  for (double& t : feet) t = basis_->Wrap(t);
+  return feet;
+}
+
+bool CurveFit::CheckEnds(std::string* error) const {
+  if (!spec_.hold_ends) return true;
+  if (spec_.parameter_kind == ParameterKind::kFree && !spec_.closed) return true;
+  *error = std::string("ends are to be held, but ") +
+           (spec_.closed ? "the curve is closed"
+                         : std::string("the parameters are ") + ToString(spec_.parameter_kind));
+  return false;
+}
+
+/// Projected parameters and the term that has them go together.
+bool CurveFit::CheckKind(const NameSpec& name, const Term& term, std::string* error) const {
+  if (term.Info().foot_points == is_projected()) return true;
+  if (!is_projected()) {
+    *error = "term " + name.ToString() + " needs projected parameters; this problem's are " +
+             ToString(spec_.parameter_kind);
+    return false;
+  }
+  if (term.Info().affine && name.name != "interpolation") return true;
+  *error = "term " + name.ToString() + " has parameters of its own, but they are projected; use " +
+           "foot_point";
+  return false;
+}
+
+/// Variables behind the control points.
+bool CurveFit::AddParameters(Problem* problem, std::string* error) {
+  setting_.parameter_offset = problem->num_variables();
+  const auto last = parameters_.size() - 1;
+  if (spec_.hold_ends) {
+    parameters_[0] = basis_->domain_begin();
+    parameters_[last] = basis_->domain_end();
+  }
+  problem->AddVariables("parameters", parameters_);
+  if (!spec_.hold_ends) return true;
+  const auto held = [&](Eigen::Index i) {
+    LinearConstraint constraint;
+    constraint.name = "t_" + std::to_string(i) + " held";
+    constraint.coefficients = {{setting_.parameter_offset + static_cast<int>(i), 1.0}};
+    constraint.value = parameters_[i];
+    return constraint;
+  };
+  return problem->SetLinearConstraints({held(0), held(last)}, error);
+}
+
+}  // namespace batten
