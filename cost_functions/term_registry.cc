@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cost_functions/fairing.h"
 #include "cost_functions/free_parameter.h"
 #include "cost_functions/interpolation.h"
 #include "cost_functions/term.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr std::unique_ptr<Term> (*kBuiltInTerms[])() = {
     &MakeInterpolationTerm,
     &MakeFreeParameterTerm,
+    &MakeFairingTerm,
 };
 
 }  // namespace
