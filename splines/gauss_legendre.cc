@@ -1,7 +1,5 @@
 #include "splines/gauss_legendre.h"
 
-#include <glog/logging.h>
-
 #include <cmath>
 #include <limits>
 
@@ -44,7 +42,6 @@ long double LegendreZero(int n, int i) {
 }  // namespace
 
 GaussRule GaussLegendreRule(int num_points) {
-  CHECK_GE(num_points, 1);
   const int n = num_points;
   GaussRule rule;
   rule.nodes.resize(static_cast<std::size_t>(n));
