@@ -57,8 +57,8 @@ class FootFamily final : public BlockFamily {
 
  private:
   static FitSetting WithParametersBehind(FitSetting setting) {
-    setting.parameter_offset = setting.control_point_offset +
-                               setting.basis->num_control_points() * setting.dimension;
+    setting.parameter_offset =
+        setting.control_point_offset + setting.basis->num_control_points() * setting.dimension;
     return setting;
   }
 
@@ -154,20 +154,21 @@ class FootFamily final : public BlockFamily {
                   Eigen::VectorXd* gradient) const override {
     const auto all = WithFeet(x);
     const int k = num_residuals();
-    return ForEachBlock(
-        *all, begin, end, gradient != nullptr,
-        [&](const auto& offset, int, const double* residuals, const double* jacobian,
-            const double*) {
-          double rho[3];
-          inner_.Loss(Eigen::Map<const Eigen::VectorXd>(residuals, k).squaredNorm(), rho);
-          *energy += weight() * rho[0];
-          if (gradient == nullptr) return;
-          for (int v = 0; v < num_local(); ++v) {
-            double sum = 0.0;
-            for (int r = 0; r < k; ++r) sum += jacobian[r * num_local() + v] * residuals[r];
-            (*gradient)[offset(v)] += 2.0 * weight() * rho[1] * sum;
-          }
-        });
+    return ForEachBlock(*all, begin, end, gradient != nullptr,
+                        [&](const auto& offset, int, const double* residuals,
+                            const double* jacobian, const double*) {
+                          double rho[3];
+                          inner_.Loss(Eigen::Map<const Eigen::VectorXd>(residuals, k).squaredNorm(),
+                                      rho);
+                          *energy += weight() * rho[0];
+                          if (gradient == nullptr) return;
+                          for (int v = 0; v < num_local(); ++v) {
+                            double sum = 0.0;
+                            for (int r = 0; r < k; ++r)
+                              sum += jacobian[r * num_local() + v] * residuals[r];
+                            (*gradient)[offset(v)] += 2.0 * weight() * rho[1] * sum;
+                          }
+                        });
   }
 
   bool DoResiduals(const Eigen::VectorXd& x, Eigen::VectorXd* residuals) const override {
@@ -184,16 +185,16 @@ class FootFamily final : public BlockFamily {
                   std::vector<Eigen::Triplet<double>>* entries) const override {
     const auto all = WithFeet(x);
     const int k = num_residuals();
-    return ForEachBlock(*all, 0, size(), true,
-                        [&](const auto& offset, int i, const double*, const double* jacobian,
-                            const double*) {
-                          for (int r = 0; r < k; ++r) {
-                            for (int v = 0; v < num_local(); ++v) {
-                              entries->emplace_back(first_row + i * k + r, offset(v),
-                                                    jacobian[r * num_local() + v]);
-                            }
-                          }
-                        });
+    return ForEachBlock(
+        *all, 0, size(), true,
+        [&](const auto& offset, int i, const double*, const double* jacobian, const double*) {
+          for (int r = 0; r < k; ++r) {
+            for (int v = 0; v < num_local(); ++v) {
+              entries->emplace_back(first_row + i * k + r, offset(v),
+                                    jacobian[r * num_local() + v]);
+            }
+          }
+        });
   }
 
   /// E_PP v + E_Pt (dt/dP v): t, which has come to d E / dt = 0, moves along.
@@ -240,20 +241,20 @@ class FootFamily final : public BlockFamily {
           if (jacobians[j] != nullptr) std::fill_n(jacobians[j], k * d, 0.0);
         }
       }
-      return family_->ForEachBlock(
-          *all, block_, block_ + 1, jacobians != nullptr,
-          [&](const auto& offset, int, const double* values, const double* jacobian,
-              const double*) {
-            std::copy_n(values, k, residuals);
-            if (jacobians == nullptr) return;
-            const int local = family_->num_local();
-            for (int v = 0; v < local; ++v) {
-              const int place = offset(v) - setting.control_point_offset;
-              double* const entry = jacobians[place / d];
-              if (entry == nullptr) continue;
-              for (int r = 0; r < k; ++r) entry[r * d + place % d] += jacobian[r * local + v];
-            }
-          });
+      return family_->ForEachBlock(*all, block_, block_ + 1, jacobians != nullptr,
+                                   [&](const auto& offset, int, const double* values,
+                                       const double* jacobian, const double*) {
+                                     std::copy_n(values, k, residuals);
+                                     if (jacobians == nullptr) return;
+                                     const int local = family_->num_local();
+                                     for (int v = 0; v < local; ++v) {
+                                       const int place = offset(v) - setting.control_point_offset;
+                                       double* const entry = jacobians[place / d];
+                                       if (entry == nullptr) continue;
+                                       for (int r = 0; r < k; ++r)
+                                         entry[r * d + place % d] += jacobian[r * local + v];
+                                     }
+                                   });
     }
 
    private:

@@ -6,8 +6,8 @@ namespace batten {
 
 void FindFeet(const BsplineBasis& basis, int dimension, int control_point_offset,
               const Points& points, Eigen::VectorXd* all) {
-  const Points control_points = Eigen::Map<const Points>(
-      all->data() + control_point_offset, basis.num_control_points(), dimension);
+  const Points control_points = Eigen::Map<const Points>(all->data() + control_point_offset,
+                                                         basis.num_control_points(), dimension);
   const BsplineCurve curve(basis, control_points);
   // Never from the last feet: of two as near as each other the same is found each time.
   Eigen::VectorXd feet = Eigen::VectorXd::Constant(points.rows(), basis.domain_begin());
@@ -22,8 +22,7 @@ bool FootFollows(const BsplineBasis& basis, const CurvePlace& place, double squa
   // At a corner, a knot where the curve is only continuous, a foot mostly stays.
   if (basis.knots()[place.span] == place.t) {
     int multiplicity = 1;
-    while (place.span - multiplicity >= 0 &&
-           basis.knots()[place.span - multiplicity] == place.t) {
+    while (place.span - multiplicity >= 0 && basis.knots()[place.span - multiplicity] == place.t) {
       ++multiplicity;
     }
     if (multiplicity >= basis.degree()) return false;

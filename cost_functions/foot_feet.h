@@ -11,8 +11,8 @@ namespace batten {
 void FindFeet(const BsplineBasis& basis, int dimension, int control_point_offset,
               const Points& points, Eigen::VectorXd* all);
 
-/// Whether a foot at `place` moves as the control points do, from |dr/dt|^2 and the second derivative
-/// of |r|^2 / 2 in t there.
+/// Whether a foot at `place` moves as the control points do, from |dr/dt|^2 and the second
+/// derivative of |r|^2 / 2 in t there.
 bool FootFollows(const BsplineBasis& basis, const CurvePlace& place, double squared_speed,
                  double curvature);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cost_functions/fairing.h"
 #include "cost_functions/foot_point.h"
 #include "cost_functions/free_parameter.h"
 #include "cost_functions/interpolation.h"
@@ -15,6 +16,7 @@ constexpr std::unique_ptr<Term> (*kBuiltInTerms[])() = {
     &MakeInterpolationTerm,
     &MakeFreeParameterTerm,
     &MakeFootPointTerm,
+    &MakeFairingTerm,
 };
 
 }  // namespace

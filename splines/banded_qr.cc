@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "splines/fold_rows.h"
+#include "splines/fold_graded_rows.h"
 
 namespace batten {
 namespace {
@@ -87,9 +87,17 @@ void BandedQr::FoldPending() {
                          : triangle_.data() + static_cast<std::size_t>(pending_column_) * row_size_;
   const PackedRows rows = {AsPacks(pending_.data()), num_pending_ / kPackLanes, kFoldStride};
   residual_ += WithFixedShape(width_, shape_.dimension, [&](auto width, auto dimension) {
-    return FoldRows<width, dimension>(width_, shape_.dimension, rows, triangle, row_size_);
+    return shape_.graded
+               ? FoldGraded<width, dimension>(width_, shape_.dimension, rows, triangle, row_size_)
+               : FoldRows<width, dimension>(width_, shape_.dimension, rows, triangle, row_size_);
   });
   num_pending_ = 0;
+}
+
+double BandedQr::Fold(int width, int dimension, PackedRows rows, double* triangle,
+                      std::ptrdiff_t triangle_stride) const {
+  return shape_.graded ? FoldGraded<-1, -1>(width, dimension, rows, triangle, triangle_stride)
+                       : FoldAny(width, dimension, rows, triangle, triangle_stride);
 }
 
 void BandedQr::Finish() {
@@ -122,7 +130,7 @@ void BandedQr::FoldWrapped() {
     for (int c = 0; c < d; ++c) wrapped(i, size + c) = row[width_ + c];
   }
   std::vector<double> reordered(static_cast<std::size_t>(size) * (size + d), 0.0);
-  residual_ += FoldAny(size, d, wrapped.packed(), reordered.data(), size + d);
+  residual_ += Fold(size, d, wrapped.packed(), reordered.data(), size + d);
 
   // Its lower half is in the border; its upper half, and the carried rows it becomes, are folded
   // along the band.
@@ -140,7 +148,7 @@ void BandedQr::FoldWrapped() {
     std::copy_n(row, std::min(width_, size - i), target);
     std::copy_n(row + width_, d, target + size);
   }
-  residual_ += FoldAny(size, d, last.packed(), dense_.data(), size + d);
+  residual_ += Fold(size, d, last.packed(), dense_.data(), size + d);
 }
 
 void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last) {
@@ -166,7 +174,7 @@ void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last)
     std::copy_n(entry, width_, row.begin());
     std::fill_n(border, num_border_, 0.0);
     std::copy_n(entry + width_, d, border + num_border_);
-    FoldAny(1, others, carried.packed(), row.data(), 1 + others);
+    Fold(1, others, carried.packed(), row.data(), 1 + others);
     std::copy_n(row.begin(), width_, entry);
     std::copy_n(border + num_border_, d, entry + width_);
     for (int b = 0; b < num_border_; ++b) {

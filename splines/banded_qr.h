@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "splines/fold_rows.h"
 #include "splines/row_block.h"
 
 namespace batten {
@@ -12,7 +13,8 @@ namespace batten {
 /// are kept in a triangle of their own and folded in by Finish(): from column 0 on they are carried
 /// along the band, with the last width - 1 columns as a border, until they have decayed below
 /// 1e-140 times the scale, usually after a few hundred columns. Small overlapping problems (n < 2
-/// width - 1) are held dense.
+/// width - 1) are held dense. Rows of graded shapes are exchanged so that the heavy ones come first
+/// (fold_graded_rows.h): weights from 1e-16 to 1e16 beside each other keep their digits.
 class BandedQr : public RowConsumer {
  public:
   explicit BandedQr(const RowShape& shape);
@@ -51,6 +53,9 @@ class BandedQr : public RowConsumer {
  private:
   class RowBuffer;
   void FoldPending();
+  /// FoldAny, heavy rows first where they are graded.
+  double Fold(int width, int dimension, PackedRows rows, double* triangle,
+              std::ptrdiff_t triangle_stride) const;
   /// Cyclic: the rest of the work, once all rows are there.
   void FoldWrapped();
   /// Folds the upper half of the wrapped rows' triangle along the band; what is left of them in

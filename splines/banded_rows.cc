@@ -51,8 +51,10 @@ class RowCounter : public RowConsumer {
 RowShape CommonShape(const std::vector<const RowSource*>& sources) {
   RowShape common = sources.empty() ? RowShape() : sources.front()->shape();
   common.num_rows = 0;
+  common.graded = sources.size() > 1;
   for (const RowSource* source : sources) {
     common.width = std::max(common.width, source->shape().width);
+    common.graded = common.graded || source->shape().graded;
   }
   // A source without rows may be wider than its matrix.
   if (!common.cyclic) common.width = std::min(common.width, common.num_columns);

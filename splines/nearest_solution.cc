@@ -10,6 +10,7 @@
 #include "splines/banded_qr.h"
 #include "splines/fold_rows.h"
 #include "splines/least_norm_fronts.h"
+#include "splines/levelled_rows.h"
 
 namespace batten {
 namespace {
@@ -191,6 +192,15 @@ bool HidesASmallSingularValue(const BandedQr& qr, int n) {
   return !(smallest > BandedQr::kRankTolerance * qr.LargestDiagonal());
 }
 
+bool HasFullRank(const BandedQr& qr, const RowShape& shape) {
+  return qr.full_rank() && !HidesASmallSingularValue(qr, shape.num_columns);
+}
+
+/// Weights do not change the rank, but they can hide it.
+bool HasFullRankLevelled(const RowSource& rows) {
+  return HasFullRank(Factor(LevelledRows(&rows)), rows.shape());
+}
+
 }  // namespace
 
 NearestSolution SolveNearest(const RowSource& rows, const Points& start) {
@@ -199,11 +209,12 @@ NearestSolution SolveNearest(const RowSource& rows, const Points& start) {
   result.control_points = start;
   const BandedQr qr = Factor(rows);
   result.diagonal_ratio = qr.DiagonalRatio();
-  if (qr.full_rank() && !HidesASmallSingularValue(qr, shape.num_columns)) {
+  const bool finite = std::isfinite(qr.LargestDiagonal());
+  if (HasFullRank(qr, shape) || (finite && shape.graded && HasFullRankLevelled(rows))) {
     qr.Solve(&result.control_points);
     result.rank = shape.num_columns;
     result.method = "banded QR";
-  } else if (!std::isfinite(qr.LargestDiagonal()) || !start.allFinite()) {
+  } else if (!finite || !start.allFinite()) {
     result.diagonal_ratio = 0.0;
   } else {
     LeastNormFronts fronts(BandedQr::kRankTolerance * qr.LargestDiagonal(), shape.dimension);

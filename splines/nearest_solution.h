@@ -9,7 +9,8 @@ namespace batten {
 
 /// The minimiser of ||A P - Q|| that is nearest to `start` (n x d) in the Euclidean norm of control
 /// points, for any rank, in time proportional to n. `method` says what was done:
-/// - "banded QR": A has full rank.
+/// - "banded QR": A has full rank. Of graded rows (row_block.h), whose weights say nothing of the
+///   rank, where the rows scaled to norm 1 have full rank.
 /// - "minimum norm, front by front": it has not. Stretches of columns are eliminated with column
 ///   exchanges, then what separates them; pivots up to BandedQr::kRankTolerance times the largest
 ///   diagonal entry of the band's R count as zero. Taken too where R has no small diagonal entry,

@@ -30,6 +30,9 @@ struct RowShape {
   int width = 0;        // columns a row touches: p + 1 for an interpolation term
   int dimension = 0;    // d: right-hand sides
   bool cyclic = false;
+  /// Rows may differ in size by many orders of magnitude: they are those of several terms, whose
+  /// weights say how they compare.
+  bool graded = false;
 };
 
 class RowConsumer {
