@@ -75,6 +75,13 @@ class BlockFamily {
   /// is no loss. Null otherwise.
   virtual const FreeSites* free_sites() const { return nullptr; }
 
+  /// Whether blocks depend on each other's parameters, whose order is kept: single blocks as Ceres
+  /// binds them do not know it.
+  virtual bool keeps_order() const { return false; }
+  /// Where it is, moves the parameters among all variables x to those in order, at which gradients
+  /// are what they say; E stays.
+  virtual void Seat(Eigen::VectorXd* /*x*/) const {}
+
   /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x,
   /// for as long as a variable with a Window stays there; the loss and weight are to be given to
   /// Ceres beside it.

@@ -42,6 +42,8 @@ struct FitSetting {
   double size = 1.0;             // longest side of the data's box, scaled: in (0.5, 1]
   int control_point_offset = 0;  // P_j stands at x[control_point_offset + j * dimension]
   int parameter_offset = -1;     // t_i stands at x[parameter_offset + i]; -1: they are fixed
+  bool keep_order = false;       // free parameters stay in the order of the data points
+  bool ends_held = false;        // those of the first and last point at the ends of the domain
   const Sites* data = nullptr;   // the data points at their fixed parameters, or at their start
   /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).
   bool use_static_sizes = true;

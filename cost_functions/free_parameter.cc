@@ -1,6 +1,9 @@
 #include "cost_functions/free_parameter.h"
 
+#include <utility>
+
 #include "cost_functions/free_family.h"
+#include "cost_functions/ordered_family.h"
 
 namespace batten {
 namespace {
@@ -14,8 +17,11 @@ class FreeParameterTerm final : public Term {
       *error = "term free_parameter needs a problem with free parameters; this one's are fixed";
       return nullptr;
     }
-    return std::make_unique<FreeFamily<FreeParameterResidual>>(
+    auto family = std::make_unique<FreeFamily<FreeParameterResidual>>(
         setting, FreeParameterResidual(), options.Real("weight"), MakeLoss(options, setting.size));
+    if (!setting.keep_order) return family;
+    return std::make_unique<OrderedFamily>(setting, std::move(family),
+                                           MakeLoss(options, setting.size));
   }
 };
 

@@ -34,9 +34,10 @@ struct Sums {
   std::vector<Real> rounding;   // its worst case, n x d
   std::vector<int> num_points;  // that each control point moves, n
   // The same of free parameters, which no two points share: their squares are summed up at once.
-  Real squared_slope = 0;           // of those that move
-  Real squared_pull = 0;            // of those past an end that E draws back into the domain
-  Real squared_slope_rounding = 0;  // of both
+  Real squared_slope = 0;                 // of those that move
+  Real squared_pull = 0;                  // of those past an end that E draws back into the domain
+  Real squared_slope_rounding = 0;        // of both
+  std::vector<std::vector<Real>> slopes;  // of each block of points that share one
   // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
   // which points near the user's origin may be far out.
   Real extent[kMostCoordinates] = {};
@@ -130,13 +131,45 @@ void AddParameter(const AuditedFit& fit, int i, const Residual& residual, AuditC
   }
   sums->squared_slope_rounding += rounding * rounding;
   if (state == ParameterState::kMoves) {
-    sums->squared_slope += slope * slope;
+    if (fit.parameter_blocks.empty()) {
+      sums->squared_slope += slope * slope;
+    } else {
+      sums->slopes[static_cast<std::size_t>(fit.parameter_blocks[i])].push_back(slope);
+    }
     return;
   }
   const double t = fit.parameters[i];
   const bool at_begin = t <= curve->domain_begin();
   CHECK(!fit.periodic && (at_begin || t >= curve->domain_end())) << "t is inside the domain";
   if (at_begin ? slope < 0 : slope > 0) sums->squared_pull += slope * slope;
+}
+
+/// Less the steepest descent of points that share one parameter and may part in their order only:
+/// the isotonic regression of -slopes, by its min-max formula.
+Real SquaredSlopeInOrder(const std::vector<Real>& slopes) {
+  const std::size_t n = slopes.size();
+  std::vector<Real> sums(n + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) sums[i + 1] = sums[i] - slopes[i];
+  Real squared = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Real highest = -std::numeric_limits<Real>::infinity();
+    for (std::size_t a = 0; a <= i; ++a) {
+      Real lowest = std::numeric_limits<Real>::infinity();
+      for (std::size_t b = i + 1; b <= n; ++b) {
+        lowest = std::min(lowest, (sums[b] - sums[a]) / static_cast<Real>(b - a));
+      }
+      highest = std::max(highest, lowest);
+    }
+    squared += highest * highest;
+  }
+  return squared;
+}
+
+void AddBlocks(Sums* sums, AuditReport* report) {
+  for (const std::vector<Real>& slopes : sums->slopes) {
+    sums->squared_slope += SquaredSlopeInOrder(slopes);
+    if (slopes.size() > 1) report->num_sharing += static_cast<int>(slopes.size());
+  }
 }
 
 std::string Number(double value) {
@@ -165,6 +198,7 @@ AuditReport Audit(const AuditedFit& fit) {
   sums.gradient.assign(fit.control_points.size(), 0);
   sums.rounding.assign(fit.control_points.size(), 0);
   sums.num_points.assign(curve.num_control_points(), 0);
+  if (!fit.parameter_blocks.empty()) sums.slopes.resize(fit.parameter_blocks.size());
   MeasureExtent(fit, &sums);
   for (int i = 0; i < m; ++i) {
     curve.MoveTo(fit.parameters[i]);
@@ -174,6 +208,7 @@ AuditReport Audit(const AuditedFit& fit) {
   }
 
   AuditReport report;
+  AddBlocks(&sums, &report);
   report.num_points = m;
   report.most_summands = *std::max_element(sums.num_points.begin(), sums.num_points.end());
   report.energy = static_cast<double>(sums.energy);

@@ -27,6 +27,10 @@ struct AuditedFit {
   std::vector<double> weights;         // m, or empty: all 1
   /// Of free parameters, m; empty: they are fixed. Those past an end are given as that end.
   std::vector<ParameterState> parameter_states;
+  /// Where the order of free ones is kept: block of each point, in the order of the points but for
+  /// block 0, which the last ones may belong to. Points of one block share one parameter. Empty:
+  /// all are their own.
+  std::vector<int> parameter_blocks;
   /// The parameters are said to be the foot points, which is checked.
   bool at_foot_points = false;
   /// Of free ones: |g| is the gradient in (P, length * t), all of one unit.
@@ -42,6 +46,7 @@ struct AuditReport {
   double gradient_norm = 0.0;
   /// Beside it: of parameters past an end that E draws back into the domain. 0 at a minimum.
   double pull_norm = 0.0;
+  int num_sharing = 0;        ///< Points that share their parameter because their order is kept.
   double energy_floor = 0.0;  // what rounding control points and data to double is worth in E,
   double gradient_floor =
       0.0;                    // and in |g|: one rounding of each number, all in the worst direction

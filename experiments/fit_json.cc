@@ -110,7 +110,8 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
                      {"gradient_norm", report.audit.gradient_norm},
                      {"gradient_floor", report.audit.gradient_floor},
                      {"rms", report.audit.rms_distance},
-                     {"max", report.audit.max_distance}};
+                     {"max", report.audit.max_distance},
+                     {"num_sharing", report.audit.num_sharing}};
   }
   json["version"] = kVersion;
   json["commit"] = kGitCommit;

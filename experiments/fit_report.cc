@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "cost_functions/options.h"
+#include "cost_functions/ordered_parameters.h"
 #include "problems/free_view.h"
 #include "splines/closest_point.h"
 
@@ -38,8 +39,11 @@ double DistanceWeight(const Problem& problem) {
             name.name == DistanceTerm(fit->spec().parameter_kind) && term.family->loss() == nullptr;
     weight += term.family->weight();
   }
-  plain =
-      plain && (is_fixed ? problem.elimination().trivial() : FreeView::Make(problem) != nullptr);
+  if (is_fixed) {
+    plain = plain && problem.elimination().trivial();
+  } else {
+    plain = plain && (fit->setting().keep_order || FreeView::Make(problem) != nullptr);
+  }
   return plain ? weight : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -47,18 +51,36 @@ std::vector<ParameterState> ParameterStates(const Problem& problem, const Eigen:
   const CurveFit& fit = *problem.curve_fit();
   if (!fit.has_free_parameters()) return {};
   const std::unique_ptr<FreeView> view = FreeView::Make(problem);
-  std::vector<ParameterState> states(static_cast<std::size_t>(fit.parameters().size()));
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const int place = static_cast<int>(i);
-    const double t = x[fit.setting().parameter_offset + place];
-    if (view->is_held(place)) {
+  const auto m = fit.parameters().size();
+  const auto is_held = [&](int i) {
+    return view != nullptr ? view->is_held(i) : fit.setting().ends_held && (i == 0 || i == m - 1);
+  };
+  const Eigen::VectorXd t = fit.OrderedIfKept(x.segment(fit.setting().parameter_offset, m));
+  std::vector<ParameterState> states(static_cast<std::size_t>(m));
+  for (int place = 0; place < m; ++place) {
+    const auto i = static_cast<std::size_t>(place);
+    if (is_held(place)) {
       states[i] = ParameterState::kHeld;
     } else {
-      states[i] =
-          PlaceOnCurve(fit.basis(), t).moves ? ParameterState::kMoves : ParameterState::kPastEnd;
+      states[i] = PlaceOnCurve(fit.basis(), t[place]).moves ? ParameterState::kMoves
+                                                            : ParameterState::kPastEnd;
     }
   }
   return states;
+}
+
+/// Which points share a parameter because the order is kept; empty where it is not.
+std::vector<int> SharedParameters(const CurveFit& fit, const Eigen::VectorXd& x) {
+  if (!fit.setting().keep_order) return {};
+  const int held = fit.setting().ends_held ? 1 : 0;
+  const auto m = fit.parameters().size();
+  const OrderedParameters order(x.segment(fit.setting().parameter_offset + held, m - 2 * held),
+                                fit.basis().periodic() ? fit.basis().domain_length() : 0.0);
+  std::vector<int> blocks = order.BlockOf();
+  // Those that are held come to no block: any number will do.
+  blocks.insert(blocks.begin(), static_cast<std::size_t>(held), 0);
+  blocks.insert(blocks.end(), static_cast<std::size_t>(held), 0);
+  return blocks;
 }
 
 AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double term_weight) {
@@ -75,6 +97,7 @@ AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double
   plain.points = copy(fit.data().points);
   plain.parameters = copy(fit.Parameters(x));
   plain.parameter_states = ParameterStates(problem, x);
+  plain.parameter_blocks = SharedParameters(fit, x);
   plain.at_foot_points = fit.is_projected();
   plain.length = problem.units().length;
   if (fit.data().weights.has_value()) plain.weights = copy(*fit.data().weights);

@@ -1,6 +1,8 @@
+#include <cmath>
 #include <string>
 
 #include "cost_functions/foot_feet.h"
+#include "cost_functions/ordered_parameters.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -27,10 +29,19 @@ bool FromString(const std::string& text, ParameterKind* kind) {
   return false;
 }
 
+Eigen::VectorXd CurveFit::OrderedIfKept(Eigen::VectorXd t) const {
+  if (!setting_.keep_order) return t;
+  const int held = setting_.ends_held ? 1 : 0;
+  const auto count = t.size() - 2 * held;
+  t.segment(held, count) =
+      OrderedParameters(t.segment(held, count), spec_.closed ? basis_->domain_length() : 0.0).t;
+  return t;
+}
+
 Eigen::VectorXd CurveFit::Parameters(const Eigen::VectorXd& x) const {
   if (is_projected()) return FeetOf(x);
   if (!has_free_parameters()) return parameters_;
-  Eigen::VectorXd t = x.segment(setting_.parameter_offset, parameters_.size());
+  Eigen::VectorXd t = OrderedIfKept(x.segment(setting_.parameter_offset, parameters_.size()));
   for (double& value : t) value = basis_->Wrap(value);
   return t;
 }
@@ -49,6 +60,11 @@ Eigen::VectorXd CurveFit::FeetOf(const Eigen::VectorXd& x) const {
 }
 
 bool CurveFit::CheckEnds(std::string* error) const {
+  if (spec_.keep_order && spec_.parameter_kind != ParameterKind::kFree) {
+    *error = std::string("the points' order is to be kept, but the parameters are ") +
+             ToString(spec_.parameter_kind);
+    return false;
+  }
   if (!spec_.hold_ends) return true;
   if (spec_.parameter_kind == ParameterKind::kFree && !spec_.closed) return true;
   *error = std::string("ends are to be held, but ") +
@@ -71,14 +87,26 @@ bool CurveFit::CheckKind(const NameSpec& name, const Term& term, std::string* er
   return false;
 }
 
+/// Of closed curves moved by whole periods, so that they go on rather than back.
+Eigen::VectorXd CurveFit::InOrder(Eigen::VectorXd t) const {
+  const double period = basis_->domain_length();
+  for (Eigen::Index i = 1; spec_.closed && i < t.size(); ++i) {
+    t[i] -= std::round((t[i] - t[i - 1]) / period) * period;
+  }
+  return OrderedIfKept(t);
+}
+
 /// Variables behind the control points.
 bool CurveFit::AddParameters(Problem* problem, std::string* error) {
   setting_.parameter_offset = problem->num_variables();
+  setting_.keep_order = spec_.keep_order;
+  setting_.ends_held = spec_.hold_ends;
   const auto last = parameters_.size() - 1;
   if (spec_.hold_ends) {
     parameters_[0] = basis_->domain_begin();
     parameters_[last] = basis_->domain_end();
   }
+  if (spec_.keep_order) parameters_ = InOrder(parameters_);
   problem->AddVariables("parameters", parameters_);
   if (!spec_.hold_ends) return true;
   const auto held = [&](Eigen::Index i) {

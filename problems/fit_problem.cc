@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "problems/fit_guard.h"
+
 namespace batten {
 
 Points CurveFit::ControlPoints(const Eigen::VectorXd& x) const {
@@ -199,6 +201,11 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
                               : is_free           ? "free_parameter"
                                                   : "interpolation";
     fit->spec_.terms.push_back({usual, {}, nullptr});
+  }
+  if (fit->spec_.guard.has_value()) {
+    const auto m = static_cast<int>(fit->data_.points.rows());
+    if (!ApplyGuard(*fit->spec_.guard, m, &fit->spec_.terms, error)) return nullptr;
+    fit->spec_.guard.reset();
   }
   if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->Scale(error)) return nullptr;
   const Points start = fit->StartPoints();

@@ -53,6 +53,11 @@ struct FitSpec {
   /// Free parameters of an open curve: those of the first and last data point stay at the ends of
   /// the domain.
   bool hold_ends = false;
+  /// Free parameters: they stay in the order of the data points, on closed curves within a period.
+  bool keep_order = false;
+  /// Against loops: a name and options as in fit_guard.h. A problem made of it has the term
+  /// instead.
+  std::optional<NameSpec> guard;
 };
 
 /// The curve-fit side of a problem: data, spline space, parameters, and the map between the scaled
@@ -70,6 +75,8 @@ class CurveFit {
   bool is_projected() const { return spec_.parameter_kind == ParameterKind::kProjected; }
   /// t_i at all variables x, in the domain: of projected ones the feet.
   Eigen::VectorXd Parameters(const Eigen::VectorXd& x) const;
+  /// The parameters that go with the variables t: themselves, or those in order if that is kept.
+  Eigen::VectorXd OrderedIfKept(Eigen::VectorXd t) const;
   int dimension() const { return static_cast<int>(data_.points.cols()); }
   /// Longest side of the data's box, in the user's units; 1 if all points are equal.
   double size() const { return size_; }
@@ -95,6 +102,7 @@ class CurveFit {
   bool CheckKind(const NameSpec& name, const Term& term, std::string* error) const;
   bool AddParameters(Problem* problem, std::string* error);
   bool CheckStart(std::string* error) const;
+  Eigen::VectorXd InOrder(Eigen::VectorXd t) const;
   Eigen::VectorXd FeetOf(const Eigen::VectorXd& x) const;
   Points StartPoints() const;
   Points StartOnPolyline() const;

@@ -1,5 +1,6 @@
 #include "problems/objective.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,8 @@ Objective::Objective(const Problem* problem, EvaluationMonitor* monitor, Options
       options_(options),
       num_variables_(problem->elimination().num_free(problem->num_variables())),
       view_(options.compile ? CurveView::Make(*problem, monitor) : nullptr),
+      keeps_order_(std::any_of(problem->terms().begin(), problem->terms().end(),
+                               [](const auto& term) { return term.family->keeps_order(); })),
       projects_(problem->curve_fit() != nullptr && problem->curve_fit()->is_projected()) {}
 
 bool Objective::AllowProjection(const Eigen::VectorXd& x) {
@@ -34,6 +37,13 @@ const FreeView* Objective::free_view() const {
   if (!free_view_is_made_) free_view_ = FreeView::Make(*problem_);
   free_view_is_made_ = true;
   return free_view_.get();
+}
+
+void Objective::Seat(Eigen::VectorXd* x) const {
+  if (!keeps_order_) return;
+  Eigen::VectorXd all = Expand(*x);
+  for (const Problem::TermInstance& term : problem_->terms()) term.family->Seat(&all);
+  *x = problem_->elimination().FreeVariables(all);
 }
 
 Eigen::VectorXd Objective::start() const {

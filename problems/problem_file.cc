@@ -5,6 +5,7 @@
 
 #include "problems/catalogue.h"
 #include "problems/data_folders.h"
+#include "problems/fit_guard.h"
 #include "problems/strict_json.h"
 
 namespace batten {
@@ -89,7 +90,7 @@ bool ReadParameters(const StrictObject& file, FitSpec* spec) {
 }
 
 bool ReadTerms(const StrictObject& file, FitSpec* spec) {
-  std::vector<std::string> texts = {"interpolation"};
+  std::vector<std::string> texts;  // none: those usual for the kind of parameters
   if (!file.Texts("terms", kOptional, &texts)) return false;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     NameSpec term;
@@ -135,11 +136,26 @@ bool ReadReference(const StrictObject& file, CatalogueEntry* entry) {
          reference.Text("source", kOptional, &source);
 }
 
+bool ReadGuard(const StrictObject& file, FitSpec* spec) {
+  if (!file.Has("guard")) return true;
+  std::string text;
+  NameSpec guard;
+  std::vector<NameSpec> terms;
+  std::string why;
+  if (!file.Text("guard", kRequired, &text)) return false;
+  if (!ParseNameSpec(text, &guard, &why) || !ApplyGuard(guard, 1, &terms, &why)) {
+    return file.Complain("guard", why);
+  }
+  spec->guard = std::move(guard);
+  return true;
+}
+
 bool ReadKind(const StrictObject& file, FitSpec* spec) {
   std::string kind = ToString(spec->parameter_kind);
   return file.Word("parameter_kind", kOptional, {"fixed", "free", "projected"}, &kind) &&
          FromString(kind, &spec->parameter_kind) &&
-         file.Flag("hold_ends", kOptional, &spec->hold_ends);
+         file.Flag("hold_ends", kOptional, &spec->hold_ends) &&
+         file.Flag("keep_order", kOptional, &spec->keep_order);
 }
 
 }  // namespace
@@ -158,12 +174,13 @@ bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string
   read.path = path;
   FitSpec* spec = &read.spec;
   if (!file.HasOnly({"name", "summary", "data", "spline", "parameters", "terms", "start",
-                     "parameter_kind", "hold_ends", "reference", "citation"}) ||
+                     "parameter_kind", "hold_ends", "keep_order", "guard", "reference",
+                     "citation"}) ||
       !ReadName(file, &read.name) || !file.Text("summary", kOptional, &read.summary) ||
       !ReadData(file, &read) || !ReadParameters(file, spec) || !ReadSpline(file, spec) ||
       !ReadTerms(file, spec) ||
       !file.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) ||
-      !ReadKind(file, spec) || !ReadReference(file, &read) ||
+      !ReadKind(file, spec) || !ReadGuard(file, spec) || !ReadReference(file, &read) ||
       !file.Text("citation", kOptional, &read.citation)) {
     return false;
   }

@@ -24,6 +24,7 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
   if (objective.problem().has_bounds()) return WhyNoBounds(objective, name);
+  if (fit->spec().keep_order) return name + " does not keep the points in their order; use lbfgs";
   return name +
          " takes one free_parameter or foot_point term without loss, terms that are affine, and no "
          "constraints "

@@ -66,7 +66,8 @@ SolverInfo LbfgsSolver::ClassInfo() {
       "Liu & Nocedal, Math. Programming 45, 1989; Liu et al., Accelerated Geometric "
       "Iteration Method, 2016; Hager & Zhang, SIAM J. Optim. 16, 2005";
   info.needs = {};
-  info.supports = {"any objective", "linear constraints", "losses", "weights", "any rank"};
+  info.supports = {"any objective", "linear constraints", "losses",
+                   "weights",       "any rank",           "order of points"};
   info.native_rule = NativeRule::kGradient;
   info.options = {
       OptionInfo::Integer("memory", 10, 3, 20, "pairs kept"),
@@ -126,22 +127,33 @@ LineSearchEnd LbfgsSolver::Search(const Eigen::VectorXd& x, double slope, LinePo
   return end;
 }
 
+/// The slope along the direction, which is first turned to where a step may lead: between x and the
+/// point that goes with its end no parameters pass each other, and E has no kink.
+double LbfgsSolver::AimAlong(const Eigen::VectorXd& x) {
+  if (objective()->keeps_order()) {
+    direction_ += x;
+    objective()->Seat(&direction_);
+    direction_ -= x;
+  }
+  return gradient_.dot(direction_);
+}
+
+double LbfgsSolver::AimDownhill(const Eigen::VectorXd& x) {
+  memory_.Clear();
+  direction_ = -gradient_;
+  return AimAlong(x);
+}
+
 std::optional<Outcome> LbfgsSolver::DoStep(Eigen::VectorXd* x) {
   memory_.Direction(gradient_, &direction_);
-  double slope = gradient_.dot(direction_);
-  if (!(slope < 0.0) && memory_.size() > 0) {
-    memory_.Clear();
-    direction_ = -gradient_;
-    slope = -gradient_.squaredNorm();
-  }
+  double slope = AimAlong(*x);
+  if (!(slope < 0.0) && memory_.size() > 0) slope = AimDownhill(*x);
   LinePoint found;
   Status status = Status::kOk;
   LineSearchEnd end = Search(*x, slope, &found, &status);
   if (end == LineSearchEnd::kNoStep && memory_.size() > 0) {
     // The pairs may hold only noise: once more from the plain gradient.
-    memory_.Clear();
-    direction_ = -gradient_;
-    end = Search(*x, -gradient_.squaredNorm(), &found, &status);
+    end = Search(*x, AimDownhill(*x), &found, &status);
   }
   if (end == LineSearchEnd::kStopped) {
     return Ended(status == Status::kNonFinite ? status : Status::kStop);
@@ -150,6 +162,11 @@ std::optional<Outcome> LbfgsSolver::DoStep(Eigen::VectorXd* x) {
     return Outcome{StopReason::kLineSearchEnded, "no step along the gradient lowers E measurably"};
   }
   if (status != Status::kOk) return Ended(status);
+  if (objective()->keeps_order()) {
+    objective()->Seat(&next_x_);
+    status = objective()->EnergyAndGradient(next_x_, &next_energy_, &next_gradient_);
+    if (status != Status::kOk) return Ended(status);
+  }
   // Pairs from the points themselves: s = x+ - x as rounded, so that it belongs to y.
   direction_ = next_x_ - *x;
   if (direction_.isZero(0.0)) {

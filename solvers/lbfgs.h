@@ -22,6 +22,8 @@ class LbfgsSolver final : public Stepper {
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   double FirstStep() const;
+  double AimAlong(const Eigen::VectorXd& x);
+  double AimDownhill(const Eigen::VectorXd& x);
   LineSearchEnd Search(const Eigen::VectorXd& x, double slope, LinePoint* found, Status* status);
 
   WolfeOptions wolfe_;

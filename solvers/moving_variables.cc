@@ -33,6 +33,11 @@ std::vector<int> PlacesInFree(const LinearElimination& elimination, int num_vari
 }  // namespace
 
 std::string WhyNoWindows(const Problem& problem, const std::string& solver_name) {
+  for (const Problem::TermInstance& term : problem.terms()) {
+    if (term.family->keeps_order()) {
+      return solver_name + " does not keep the points in their order; use lbfgs";
+    }
+  }
   std::vector<char> moves(static_cast<std::size_t>(problem.num_variables()), 0);
   bool is_bounded = false;
   ForEachWindow(problem, problem.start(), [&](const BindingWindow& window) {

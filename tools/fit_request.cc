@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include "problems/catalogue.h"
+#include "problems/fit_guard.h"
 #include "tools/fitted_points.h"
 #include "tools/knot_file.h"
 #include "tools/run_flags.h"
@@ -34,14 +35,19 @@ DEFINE_string(
 DEFINE_string(
     terms, "",
     "Terms of the energy with their options, separated by commas (batten list terms). Not "
-    "given: interpolation; with free parameters free_parameter.");
+    "given: interpolation; with free parameters free_parameter, projected foot_point.");
 DEFINE_string(start, kDefaults.start,
               "Where the control points start: on the polyline through the data, all at its "
               "centroid, on a circle or ellipse around it, or those of another fit (a file "
               "written by --out). Free parameters start at the feet on a circle, ellipse or fit.");
 DEFINE_string(parameter_kind, batten::ToString(kDefaults.parameter_kind),
               "fixed: the parameters stay what they are; free: they are unknowns beside the "
-              "control points.");
+              "control points; projected: they are always the foot points.");
+DEFINE_bool(keep_order, kDefaults.keep_order,
+            "Free parameters: they stay in the order of the data points.");
+DEFINE_string(guard, "none",
+              "Against loops where no point is nearest to the curve: length or bending, a light "
+              "fairing term that every solver honours; /weight=W per data point.");
 DEFINE_bool(hold_ends, kDefaults.hold_ends,
             "Free parameters of an open curve: the first and the last one stay at the ends.");
 
@@ -125,6 +131,20 @@ bool ApplyTerms(FitSpec* spec, std::string* error) {
   return is_good;
 }
 
+bool ApplyGuardFlag(FitSpec* spec, std::string* error) {
+  if (!WasGiven("guard")) return true;
+  spec->guard.reset();
+  if (FLAGS_guard == "none") return true;
+  NameSpec guard;
+  std::vector<NameSpec> terms;
+  if (!ParseNameSpec(FLAGS_guard, &guard, error) || !ApplyGuard(guard, 1, &terms, error)) {
+    *error = "--guard: " + *error;
+    return false;
+  }
+  spec->guard = std::move(guard);
+  return true;
+}
+
 bool ApplyStart(FitRequest* request, std::string* error) {
   FitSpec* spec = &request->spec;
   spec->start_points.resize(0, 0);
@@ -179,7 +199,9 @@ std::vector<FlagInfo> FitRequestFlags() {
           TextFlag("terms", "TERMS", "terms of batten list terms, separated by commas"),
           TextFlag("start", "START", "data, centroid, circle, ellipse, or a file of batten fit"),
           WordFlag("parameter_kind", {"fixed", "free", "projected"}),
-          SwitchFlag("hold_ends")};
+          SwitchFlag("hold_ends"),
+          SwitchFlag("keep_order"),
+          TextFlag("guard", "GUARD", "none, length or bending, with /weight=W")};
 }
 
 bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* request,
@@ -192,12 +214,14 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
   if (WasGiven("start") && !ApplyStart(request, error)) return false;
   if (WasGiven("parameter_kind")) FromString(FLAGS_parameter_kind, &spec->parameter_kind);
   if (WasGiven("hold_ends")) spec->hold_ends = FLAGS_hold_ends;
+  if (WasGiven("keep_order")) spec->keep_order = FLAGS_keep_order;
   if (WasGiven("parameters")) {
     Parameterization rule = Parameterization::kUniform;
     spec->parameters.reset();
     if (FromString(FLAGS_parameters, &rule)) spec->parameters = rule;
   }
-  if (!ApplyKnots(request, error) || !ApplyDomain(spec, error) || !ApplyTerms(spec, error)) {
+  if (!ApplyKnots(request, error) || !ApplyDomain(spec, error) || !ApplyTerms(spec, error) ||
+      !ApplyGuardFlag(spec, error)) {
     return false;
   }
   if (spec->given_knots.empty()) {

@@ -27,6 +27,7 @@ std::string Plural(long count, const std::string& noun) {
 /// The rule that made them; where they are free, what they start from.
 std::string ParametersText(const CurveFit& fit) {
   const FitSpec& spec = fit.spec();
+  if (fit.is_projected()) return "projected: the foot points";
   std::string rule = spec.parameters.has_value() ? ToString(*spec.parameters) : "given";
   if (!fit.has_free_parameters()) return rule;
   std::string start = rule;
@@ -35,7 +36,8 @@ std::string ParametersText(const CurveFit& fit) {
   } else if (spec.start == "circle" || spec.start == "ellipse") {
     start = "at the feet on the " + spec.start;
   }
-  return "free, start " + start + (spec.hold_ends ? ", ends held" : "");
+  return "free, start " + start + (spec.hold_ends ? ", ends held" : "") +
+         (spec.keep_order ? ", order kept" : "");
 }
 
 std::string CurveLines(const std::string& label, const Problem& problem) {
@@ -114,10 +116,16 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
   text += Line("", "rms " + Short(report.rms_orthogonal) + ", largest " +
                        Short(report.max_orthogonal) + " (orthogonal)");
   if (report.shape.has_value()) text += Line("shape", ShapeText(*report.shape));
-  text += Line("calls", "E " + std::to_string(counts.energy_calls) + ", g " +
-                            std::to_string(counts.gradient_calls) + ", Jacobian " +
-                            std::to_string(counts.jacobian_calls) + ", products " +
-                            std::to_string(counts.products));
+  if (report.audited && report.audit.num_sharing > 0) {
+    text += Line("order", std::to_string(report.audit.num_sharing) +
+                              " points share a parameter with a neighbour");
+  }
+  text += Line(
+      "calls",
+      "E " + std::to_string(counts.energy_calls) + ", g " + std::to_string(counts.gradient_calls) +
+          ", Jacobian " + std::to_string(counts.jacobian_calls) + ", products " +
+          std::to_string(counts.products) +
+          (counts.projections == 0 ? "" : ", projections " + std::to_string(counts.projections)));
   text += Line("time", Short(run.seconds) + " s, of which set-up " + Short(run.setup_seconds) +
                            " s; processor " + Short(run.cpu_seconds) + " s");
   text += Line("audit", AuditText(report));

@@ -1,0 +1,81 @@
+#include "cost_functions/ordered_family.h"
+
+namespace batten {
+
+void OrderedFamily::Bind(const Eigen::VectorXd& x, int block, std::vector<int>* offsets,
+                         std::vector<int>* sizes) const {
+  inner_->Bind(Ordered(x, Order(x)), block, offsets, sizes);
+}
+
+std::unique_ptr<ceres::CostFunction> OrderedFamily::MakeCeresCostFunction(const Eigen::VectorXd& x,
+                                                                          int block) const {
+  return inner_->MakeCeresCostFunction(Ordered(x, Order(x)), block);
+}
+
+Eigen::VectorXd OrderedFamily::Ordered(const Eigen::VectorXd& x,
+                                       const OrderedParameters& order) const {
+  Eigen::VectorXd ordered = x;
+  ordered.segment(begin_, count_) = order.t;
+  return ordered;
+}
+
+void OrderedFamily::Seat(Eigen::VectorXd* x) const {
+  if (x->allFinite()) *x = Ordered(*x, Order(*x));
+}
+
+bool OrderedFamily::DoEvaluate(const Eigen::VectorXd& x, int begin, int end, double* energy,
+                               Eigen::VectorXd* gradient) const {
+  if (!x.allFinite()) return false;
+  const OrderedParameters order = Order(x);
+  const Eigen::VectorXd ordered = Ordered(x, order);
+  if (gradient == nullptr) {
+    return inner_->Evaluate(ordered, begin, end, energy, nullptr) == Status::kOk;
+  }
+  Eigen::VectorXd by_t = Eigen::VectorXd::Zero(x.size());
+  if (inner_->Evaluate(ordered, begin, end, energy, &by_t) != Status::kOk) return false;
+  by_t.segment(begin_, count_) = order.SteepestAscent(by_t.segment(begin_, count_));
+  *gradient += by_t;
+  return true;
+}
+
+bool OrderedFamily::DoResiduals(const Eigen::VectorXd& x, Eigen::VectorXd* residuals) const {
+  return x.allFinite() && inner_->Residuals(Ordered(x, Order(x)), residuals) == Status::kOk;
+}
+
+bool OrderedFamily::DoJacobian(const Eigen::VectorXd& x, int first_row,
+                               std::vector<Eigen::Triplet<double>>* entries) const {
+  if (!x.allFinite()) return false;
+  const OrderedParameters order = Order(x);
+  std::vector<Eigen::Triplet<double>> by_t;
+  if (inner_->Jacobian(Ordered(x, order), first_row, &by_t) != Status::kOk) return false;
+  const std::vector<int> block_of = order.BlockOf();
+  for (const Eigen::Triplet<double>& entry : by_t) {
+    const int i = static_cast<int>(entry.col()) - begin_;
+    if (i < 0 || i >= count_) {
+      entries->push_back(entry);
+      continue;
+    }
+    // Each point of a block has the block's mean; those cut off have the first block's.
+    const auto b = static_cast<std::size_t>(block_of[static_cast<std::size_t>(i)]);
+    const int size = order.block_begins[b + 1] - order.block_begins[b];
+    for (int k = order.block_begins[b]; k < order.block_begins[b + 1]; ++k) {
+      entries->emplace_back(entry.row(), begin_ + k, entry.value() / size);
+    }
+  }
+  return true;
+}
+
+bool OrderedFamily::DoAddHessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& direction,
+                                      Eigen::VectorXd* product) const {
+  if (!x.allFinite()) return false;
+  const OrderedParameters order = Order(x);
+  Eigen::VectorXd along = direction;
+  along.segment(begin_, count_) = order.Apply(direction.segment(begin_, count_));
+  Eigen::VectorXd by_t = Eigen::VectorXd::Zero(x.size());
+  if (inner_->AddHessianTimes(Ordered(x, order), along, &by_t) != Status::kOk) return false;
+  by_t.segment(begin_, count_) = order.ApplyTransposed(by_t.segment(begin_, count_));
+  *product += by_t;
+  return true;
+}
+
+}  // namespace batten

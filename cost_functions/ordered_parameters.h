@@ -1,0 +1,33 @@
+#ifndef BATTEN_COST_FUNCTIONS_ORDERED_PARAMETERS_H_
+#define BATTEN_COST_FUNCTIONS_ORDERED_PARAMETERS_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace batten {
+
+/// The nearest t to s with t_0 <= t_1 <= ... <= t_(m-1), and t_(m-1) <= t_0 + period on closed
+/// curves: the least-squares isotonic regression by pooling adjacent violators (Barlow et al.,
+/// Statistical Inference under Order Restrictions, 1972), then cut off a period after t_0.
+struct OrderedParameters {
+  /// period: 0 on open curves.
+  OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double period);
+
+  /// dt = (dt/ds) ds, and its transpose: means over the blocks of equal t.
+  Eigen::VectorXd Apply(const Eigen::Ref<const Eigen::VectorXd>& ds) const;
+  Eigen::VectorXd ApplyTransposed(const Eigen::Ref<const Eigen::VectorXd>& dt) const;
+
+  /// With g = dE/dt at t, less the steepest descent of E(t(s)) from s = t: points of one block go
+  /// together unless E falls as they part. It is 0 at a minimum over ordered t and nowhere else.
+  Eigen::VectorXd SteepestAscent(const Eigen::Ref<const Eigen::VectorXd>& g) const;
+  /// Block of each point; 0 of those that are cut off.
+  std::vector<int> BlockOf() const;
+
+  Eigen::VectorXd t;
+  std::vector<int> block_begins;  ///< Of points with one t; then m.
+  int num_cut = 0;                ///< The last points, which are a period after the first block.
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_COST_FUNCTIONS_ORDERED_PARAMETERS_H_

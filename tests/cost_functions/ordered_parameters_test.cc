@@ -1,0 +1,100 @@
+#include "cost_functions/ordered_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace batten {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+Eigen::VectorXd Vector(std::initializer_list<double> values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.begin(),
+                                           static_cast<Eigen::Index>(values.size()));
+}
+
+/// The isotonic regression by its min-max formula (Robertson, Wright & Dykstra, Order Restricted
+/// Statistical Inference, 1988, theorem 1.4.4).
+Eigen::VectorXd MinMax(const Eigen::VectorXd& s) {
+  Eigen::VectorXd t(s.size());
+  for (Eigen::Index i = 0; i < s.size(); ++i) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (Eigen::Index a = 0; a <= i; ++a) {
+      double lowest = std::numeric_limits<double>::infinity();
+      for (Eigen::Index b = i; b < s.size(); ++b) {
+        lowest = std::min(lowest, s.segment(a, b - a + 1).mean());
+      }
+      highest = std::max(highest, lowest);
+    }
+    t[i] = highest;
+  }
+  return t;
+}
+
+Eigen::VectorXd RandomVector(int size, std::mt19937* random) {
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd v(size);
+  for (double& entry : v) entry = normal(*random);
+  return v;
+}
+
+TEST(OrderedParameters, LeavesThoseInOrderToTheLastBit) {
+  const Eigen::VectorXd s = Vector({0.1, 0.3, 0.3, 0.3, 0.7, 1.1});
+  EXPECT_EQ(OrderedParameters(s, 0.0).t, s);
+  EXPECT_EQ(OrderedParameters(s, 1.0).t, s);
+  EXPECT_EQ(OrderedParameters(s, 0.0).block_begins, (std::vector<int>{0, 1, 4, 5, 6}));
+}
+
+TEST(OrderedParameters, PoolsThoseThatPassEachOther) {
+  const OrderedParameters order(Vector({0.2, 0.6, 0.4, 0.9}), 0.0);
+  EXPECT_LT((order.t - Vector({0.2, 0.5, 0.5, 0.9})).norm(), 4 * kEps);
+  EXPECT_EQ(order.block_begins, (std::vector<int>{0, 1, 3, 4}));
+}
+
+TEST(OrderedParameters, AreTheNearestOrderedOnes) {
+  std::mt19937 random(71);
+  for (int size = 1; size <= 12; ++size) {
+    const Eigen::VectorXd s = RandomVector(size, &random);
+    EXPECT_LT((OrderedParameters(s, 0.0).t - MinMax(s)).norm(), 64 * kEps);
+  }
+}
+
+TEST(OrderedParameters, EndAPeriodAfterTheFirst) {
+  const OrderedParameters order(Vector({0.0, 0.4, 1.3, 1.2}), 1.0);
+  EXPECT_EQ(order.t, Vector({0.0, 0.4, 1.0, 1.0}));
+  EXPECT_EQ(order.num_cut, 2);
+  EXPECT_EQ(order.BlockOf(), (std::vector<int>{0, 1, 0, 0}));
+}
+
+TEST(OrderedParameters, HaveTheDerivativeOfDifferences) {
+  std::mt19937 random(72);
+  for (const double period : {0.0, 1.5}) {
+    const Eigen::VectorXd s = RandomVector(9, &random), v = RandomVector(9, &random);
+    constexpr double kStep = 1e-7;  // shorter than any distance between neighbours here
+    const OrderedParameters order(s, period);
+    const Eigen::VectorXd difference = (OrderedParameters(s + kStep * v, period).t -
+                                        OrderedParameters(s - kStep * v, period).t) /
+                                       (2.0 * kStep);
+    EXPECT_LT((order.Apply(v) - difference).norm(), 100 * kEps / kStep);
+    const Eigen::VectorXd w = RandomVector(9, &random);
+    EXPECT_NEAR(order.Apply(v).dot(w), v.dot(order.ApplyTransposed(w)), 64 * kEps);
+  }
+}
+
+TEST(OrderedParameters, DescendWhereOrderAllowsIt) {
+  const OrderedParameters order(Vector({0.3, 0.5, 0.5, 0.9}), 0.0);
+  // E falls as the second goes back and the third on: they part.
+  const Eigen::VectorXd apart = Vector({0.0, 1.0, -3.0, 0.0});
+  EXPECT_EQ(order.SteepestAscent(apart), apart);
+  // E would fall if they passed each other: they stay, at a minimum.
+  EXPECT_TRUE(order.SteepestAscent(Vector({0.0, -2.0, 2.0, 0.0})).isZero(0.0));
+  // They go on together.
+  EXPECT_EQ(order.SteepestAscent(Vector({0.0, -3.0, 1.0, 0.0})), Vector({0.0, -1.0, -1.0, 0.0}));
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,75 @@
+// Guards against loops, and projected fits, through every solver that takes them.
+#include <gtest/gtest.h>
+
+#include "experiments/fit_report.h"
+#include "experiments/run.h"
+#include "tests/experiments/outlines.h"
+#include "tests/solvers/test_fits.h"
+
+namespace batten {
+namespace {
+
+FitReport Report(const Problem& problem, const std::string& solver, int iterations = 3000) {
+  RunSpec spec;
+  spec.max_iterations = iterations;
+  return MeasureFit(problem, RunSolver(problem, solver, spec), spec);
+}
+
+constexpr const char* kSolvers[] = {"lbfgs",  "ceres_lbfgs", "ceres_lm", "newton", "foot_newton",
+                                    "lm_schur", "varpro",      "pdm",      "tdm",    "sdm"};
+
+TEST(Guards, LeaveNoLoopWhateverTheSolver) {
+  FitSpec spec = MakeFreeSpec(3, true, 20);
+  const FitReport loose = Report(*MakeFileFit("animals/rhino_100.csv", spec), "foot_newton");
+  ASSERT_TRUE(loose.shape.has_value());
+  EXPECT_GT(loose.shape->num_free_loops, 0);
+  // The outline is 440 long.
+  EXPECT_GT(loose.shape->length, 2 * 440.0);
+  for (const char* guard : {"length", "bending"}) {
+    spec.guard = NameSpec{guard, {}, nullptr};
+    const auto problem = MakeFileFit("animals/rhino_100.csv", spec);
+    for (const char* solver : kSolvers) {
+      const FitReport report = Report(*problem, solver);
+      ASSERT_TRUE(report.shape.has_value());
+      EXPECT_EQ(report.shape->num_free_loops, 0) << guard << " " << solver;
+      EXPECT_LT(report.shape->length, 1.25 * 440.0) << guard << " " << solver;
+    }
+  }
+}
+
+TEST(ProjectedFits, AreAuditedAtTheirFeet) {
+  const auto problem =
+      MakeFileFit("animals/rhino_100.csv", MakeProjectedSpec(3, true, 12));
+  for (const char* solver : {"lbfgs", "newton", "lm_schur", "pdm"}) {
+    const FitReport report = Report(*problem, solver, 50);
+    EXPECT_TRUE(report.audited && report.verdict.holds) << solver << report.verdict.failure;
+    EXPECT_NEAR(report.rms, report.rms_orthogonal, 1e-12 * report.rms);
+  }
+}
+
+TEST(ProjectedFits, FailTheAuditAwayFromTheirFeet) {
+  // A square as a curve of degree 1, one point beside the middle of its lower side.
+  AuditedFit fit;
+  fit.degree = 1;
+  fit.periodic = true;
+  fit.dimension = 2;
+  fit.knots = {-1, 0, 1, 2, 3, 4, 5};
+  fit.control_points = {1, 0, 1, 1, 0, 1, 0, 0};
+  fit.points = {0.5, -0.25};
+  fit.at_foot_points = true;
+  Claim claim;
+  claim.energy = 0.0625;
+  fit.parameters = {0.5};
+  for (const double t : {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5}) {
+    fit.parameters = {t};
+    const AuditReport report = Audit(fit);
+    const bool is_foot = report.foot_excess <= report.foot_allowed;
+    EXPECT_EQ(is_foot, std::abs(report.energy - 0.0625) < 1e-12) << t << " " << report.energy;
+    claim.energy = report.energy;
+    claim.gradient_norm = report.gradient_norm;
+    EXPECT_EQ(Verify(claim, report).holds, is_foot);
+  }
+}
+
+}  // namespace
+}  // namespace batten

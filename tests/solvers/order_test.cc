@@ -1,0 +1,77 @@
+// Free parameters that stay in the order of the data points.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// Points of a zigzag that runs to and fro: feet on a smooth curve would change their order.
+std::unique_ptr<Problem> Zigzag(bool closed, bool keep_order, bool hold_ends = false) {
+  DataSet data;
+  data.name = "zigzag";
+  data.points.resize(40, 2);
+  for (int i = 0; i < 40; ++i) {
+    const double a = (closed ? 2.0 * M_PI : M_PI) * (i + (i % 3 == 0 ? 1.7 : 0.0)) / 42.0;
+    data.points.row(i) << 3.0 * std::cos(a), 2.0 * std::sin(a) + 0.1 * (i % 2);
+  }
+  FitSpec spec = MakeFreeSpec(3, closed, 9, "data");
+  spec.parameters = Parameterization::kUniform;
+  spec.keep_order = keep_order;
+  spec.hold_ends = hold_ends;
+  spec.guard = NameSpec{"length", {}, nullptr};  // without it the points slide for ever
+  return MakeFit(data, spec);
+}
+
+bool IsInOrder(const Eigen::VectorXd& t) {
+  return std::is_sorted(t.data(), t.data() + t.size());
+}
+
+TEST(OrderOfPoints, IsKeptByLbfgsUpToAConstrainedMinimum) {
+  for (const auto& [closed, hold_ends] :
+       {std::pair(true, false), std::pair(false, false), std::pair(false, true)}) {
+    SCOPED_TRACE(std::to_string(closed) + std::to_string(hold_ends));
+    const auto problem = Zigzag(closed, true, hold_ends);
+    SolverTrial trial(*problem, "lbfgs", {20000});
+    EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << ToString(trial.outcome.reason);
+    const CurveFit& fit = *problem->curve_fit();
+    // Open curves: on the curve, where those past an end are at it.
+    Eigen::VectorXd t = fit.Parameters(trial.all);
+    if (closed) t = fit.OrderedIfKept(trial.all.tail(t.size()));
+    EXPECT_TRUE(IsInOrder(t));
+    EXPECT_LE(t[t.size() - 1] - t[0], fit.basis().domain_length() * (1 + 4 * kEps));
+    // Without the order points do change it, and E is lower.
+    const auto loose = Zigzag(closed, false, hold_ends);
+    SolverTrial free_trial(*loose, "lbfgs", {20000});
+    EXPECT_FALSE(IsInOrder(free_trial.all.tail(t.size())));
+    EXPECT_LT(free_trial.context.Energy(free_trial.x), trial.context.Energy(trial.x));
+  }
+}
+
+TEST(OrderOfPoints, EndsWhereNoOrderedStepLowersTheEnergy) {
+  const auto problem = Zigzag(false, true);
+  SolverTrial trial(*problem, "lbfgs", {20000});
+  const double energy = trial.context.Energy(trial.x);
+  const auto m = problem->curve_fit()->parameters().size();
+  std::mt19937 random(73);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 200; ++k) {
+    // Steps of ordered parameters lead to ordered ones half of the time; t(s) is what counts.
+    Eigen::VectorXd x = trial.x;
+    for (double& value : x.tail(m)) value += 1e-4 * normal(random);
+    EXPECT_GE(trial.context.Energy(x), energy * (1.0 - 64 * kEps));
+  }
+}
+
+TEST_P(EverySolver, KeepsTheOrderOfPointsOrSaysThatItDoesNot) {
+  const auto problem = Zigzag(true, true);
+  const std::string why = WhyUnsupported(*problem, free_name());
+  EXPECT_EQ(why.empty(), GetParam() == "lbfgs") << why;
+  if (!why.empty()) ExpectOneSentenceWithAWayOut(why, free_name());
+}
+
+}  // namespace
+}  // namespace batten
