@@ -9,7 +9,7 @@
 
 namespace batten {
 
-PieceCutter::PieceCutter(const BezierCurve& curve, const StopTest& test, const CutRule& rule)
+PieceCutter::PieceCutter(const BezierCurve& curve, const StopTest& test, const CutChoice& rule)
     : curve_(curve), rule_(rule) {
   degree_ = curve.degree();
   dimension_ = curve.dimension();
@@ -24,7 +24,7 @@ StopValue PieceCutter::Try(double u) {
   SetPlace(u);
   CutBezier(degree_, dimension_, fraction_, points_, trial_first_, trial_second_);
   ++cuts_;
-  ++evaluations_;
+  ++tests_;
   tried_ = u;
   first_ = trial_first_;
   second_ = trial_second_;
@@ -94,7 +94,7 @@ void PieceCutter::ComputeAfresh(const PieceInterval& piece, const double* begin_
 }
 
 bool PieceCutter::Passes(const double* points) {
-  ++evaluations_;
+  ++tests_;
   return stop_->Passes(points);
 }
 

@@ -20,7 +20,7 @@ struct PieceInterval {
 /// what it is made of.
 class PieceCutter final : public CutTrial {
  public:
-  PieceCutter(const BezierCurve& curve, const StopTest& test, const CutRule& rule);
+  PieceCutter(const BezierCurve& curve, const StopTest& test, const CutChoice& rule);
 
   std::size_t size() const { return size_; }  ///< Numbers of a piece: (n + 1) d.
   StopValue Try(double u) override;
@@ -40,16 +40,17 @@ class PieceCutter final : public CutTrial {
   void ComputeAfresh(const PieceInterval& piece, const double* begin_point, double* points);
   bool Passes(const double* points);
 
-  std::int64_t cuts() const { return cuts_; }
-  std::int64_t evaluations() const { return evaluations_; }
+  std::int64_t cuts() const { return cuts_ + own_evaluations_; }
+  std::int64_t evaluations() const { return tests_ + own_evaluations_; }
 
  private:
   void SetPlace(double u);
 
   const BezierCurve& curve_;
-  const CutRule& rule_;
+  const CutChoice& rule_;
   std::size_t size_;
-  std::int64_t cuts_ = 0;
+  std::int64_t cuts_ = 0;  // without the rule's own, as are
+  std::int64_t tests_ = 0;
   int chain_ = 0;
   double place_ = 0.0;     // the cut's parameter on the curve
   double fraction_ = 0.0;  // and on the piece

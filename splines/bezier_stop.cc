@@ -24,6 +24,8 @@ constexpr NamedMeasure kNames[] = {
 // A piece passes if the upper bound of its distance does: 2 % cost 1 % of its length.
 constexpr double kSegmentAccuracy = 0.02;
 
+constexpr int kSecond = 2, kThird = 3, kFourth = 4;
+
 /// How the tolerance and rounding become the largest allowed value.
 struct Limits {
   double wanted;
@@ -93,24 +95,38 @@ StopValue StopTest::Measured(const double* points) const {
   switch (measure_) {
     case StopMeasure::kControlPoints: {
       const Quotient squared = SquaredChordDistance(degree_, dimension_, points);
-      return {squared.numerator, limit_ * squared.denominator, 4};
+      return {squared.numerator, limit_ * squared.denominator, power()};
     }
     case StopMeasure::kFlatness: {
       const Quotient sum = Flatness(degree_, dimension_, points);
-      return {sum.numerator, limit_ * sum.denominator, 4};
+      return {sum.numerator, limit_ * sum.denominator, power()};
     }
     case StopMeasure::kHullArea:
-      return {HullArea(degree_, points), limit_, 3};
+      return {HullArea(degree_, points), limit_, power()};
     case StopMeasure::kSegment: {
       const double* last = points + degree_ * dimension_;
       const DistanceBounds bounds =
           BoundSegmentDistance(degree_, dimension_, points, points, last, kSegmentAccuracy, 0.0);
-      return {bounds.upper, limit_, 2};
+      return {bounds.upper, limit_, power()};
     }
     case StopMeasure::kAngle:
       break;
   }
-  return {SquaredLegSlope(degree_, dimension_, points), limit_, 2};
+  return {SquaredLegSlope(degree_, dimension_, points), limit_, power()};
+}
+
+int StopTest::power() const {
+  switch (measure_) {
+    case StopMeasure::kControlPoints:
+    case StopMeasure::kFlatness:
+      return kFourth;
+    case StopMeasure::kHullArea:
+      return kThird;
+    case StopMeasure::kSegment:
+    case StopMeasure::kAngle:
+      break;
+  }
+  return kSecond;
 }
 
 bool StopTest::Passes(const double* points) const {
@@ -130,9 +146,9 @@ double StopValue::RelativeLength() const {
   if (value == 0.0) return 0.0;
   const double ratio = value / limit;
   switch (power) {
-    case 2:
+    case kSecond:
       return std::sqrt(ratio);
-    case 3:
+    case kThird:
       return std::cbrt(ratio);
     default:
       return std::sqrt(std::sqrt(ratio));

@@ -49,6 +49,7 @@ class StopTest {
   /// The tolerance is below rounding and was raised.
   bool is_raised() const { return is_raised_; }
   StopMeasure measure() const { return measure_; }
+  int power() const;  ///< StopValue::power.
   /// Largest allowed value: in the curve's own units, squared where the measure is an area; the
   /// squared distance of kControlPoints; of kAngle the squared tangent.
   double limit() const { return limit_; }

@@ -237,7 +237,7 @@ bool Fail(const std::string& sentence, std::string* error) {
 
 }  // namespace
 
-bool Subdivide(const BezierCurve& curve, const CutRule& rule, const SubdivisionOptions& options,
+bool Subdivide(const BezierCurve& curve, const CutChoice& rule, const SubdivisionOptions& options,
                Subdivision* result, std::string* error) {
   *result = Subdivision();
   if (!options.IsValid(error)) return false;

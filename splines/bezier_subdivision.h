@@ -30,8 +30,8 @@ class CutTrial {
   virtual StopValue Try(double u) = 0;
   const double* first() const { return first_; }  ///< Parts of the last Try().
   const double* second() const { return second_; }
-  /// Books evaluations of the rule's own objective.
-  void Count(int evaluations) { evaluations_ += evaluations; }
+  /// Books evaluations of the rule's own objective, each of which has cut the piece.
+  void Count(int evaluations) { own_evaluations_ += evaluations; }
 
  protected:
   int degree_ = 0;
@@ -44,11 +44,11 @@ class CutTrial {
   bool passes_ = false;
   const double* first_ = nullptr;
   const double* second_ = nullptr;
-  std::int64_t evaluations_ = 0;
+  std::int64_t own_evaluations_ = 0;
 };
 
 /// Where a piece is to be cut, in (0, 1) of it; anything else is our bug: std::logic_error.
-using CutRule = std::function<double(CutTrial*)>;
+using CutChoice = std::function<double(CutTrial*)>;
 
 enum class SubdivisionMode {
   kAdaptive,  ///< Only pieces that fail are cut.
@@ -97,7 +97,7 @@ struct Subdivision {
 /// grow by doubling, and not for a cut. Scaling the curve by a power of two changes no parameter;
 /// coordinates may be as large as a double. False with one sentence in `error` for options that are
 /// not valid and for a stop by hull area where the curve is not planar.
-bool Subdivide(const BezierCurve& curve, const CutRule& rule, const SubdivisionOptions& options,
+bool Subdivide(const BezierCurve& curve, const CutChoice& rule, const SubdivisionOptions& options,
                Subdivision* result, std::string* error);
 
 /// The rule that everyone knows: at 1/2.

@@ -19,7 +19,7 @@ namespace {
 
 BezierCurve CurveOf(const Points& points) { return BezierCurve::Make(points, nullptr).value(); }
 
-Subdivision Subdivided(const BezierCurve& curve, const CutRule& rule,
+Subdivision Subdivided(const BezierCurve& curve, const CutChoice& rule,
                        const SubdivisionOptions& options) {
   Subdivision result;
   std::string error;
