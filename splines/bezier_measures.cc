@@ -108,6 +108,7 @@ double SquaredLegSlopeIn(int n, const double* points) {
 struct PlanePoint {
   double x;
   double y;
+  int index;
   bool operator<(const PlanePoint& other) const {
     return x < other.x || (x == other.x && y < other.y);
   }
@@ -141,13 +142,12 @@ Quotient Flatness(int degree, int dimension, const double* points) {
   return FoldDistances<Sum>(degree, dimension, points);
 }
 
-double HullArea(int degree, const double* points) {
+int ConvexHull(int degree, const double* points, int* indices) {
   const int count = degree + 1;
-  std::array<PlanePoint, kMaxBezierDegree + 1> sorted;
-  for (int i = 0; i < count; ++i) sorted[i] = {points[2 * i], points[2 * i + 1]};
+  std::array<PlanePoint, kMaxBezierDegree + 1> sorted, chain;
+  for (int i = 0; i < count; ++i) sorted[i] = {points[2 * i], points[2 * i + 1], i};
   std::sort(sorted.begin(), sorted.begin() + count);
-  std::array<PlanePoint, kMaxBezierDegree + 1> chain;
-  double twice_area = 0.0;
+  int num_vertices = 0;
   // The lower chain from left to right, then the upper one from right to left.
   for (int pass = 0; pass < 2; ++pass) {
     int size = 0;
@@ -156,9 +156,21 @@ double HullArea(int degree, const double* points) {
       while (size >= 2 && Turn(chain[size - 2], chain[size - 1], next) <= 0.0) --size;
       chain[size++] = next;
     }
-    // The fan of triangles from the first point: nothing cancels far from the origin.
-    for (int k = 1; k < size; ++k) twice_area += Turn(sorted[0], chain[k - 1], chain[k]);
+    // Each chain ends where the other begins.
+    for (int k = 0; k + 1 < size; ++k) indices[num_vertices++] = chain[k].index;
   }
+  return num_vertices;
+}
+
+double HullArea(int degree, const double* points) {
+  std::array<int, kMaxBezierDegree + 2> hull;
+  const int count = ConvexHull(degree, points, hull.data());
+  const auto vertex = [&](int k) {
+    return PlanePoint{points[2 * hull[k]], points[2 * hull[k] + 1], hull[k]};
+  };
+  // The fan of triangles from the first point: nothing cancels far from the origin.
+  double twice_area = 0.0;
+  for (int k = 1; k + 1 < count; ++k) twice_area += Turn(vertex(0), vertex(k), vertex(k + 1));
   return 0.5 * twice_area;
 }
 

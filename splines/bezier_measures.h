@@ -23,7 +23,11 @@ bool IsNearChord(int degree, int dimension, const double* points, double squared
 /// Flatness: the sum of the squared distances of the inner control points from the chord's line.
 Quotient Flatness(int degree, int dimension, const double* points);
 
-/// Area of the convex hull of planar points (d = 2), in squared units: Andrew's chain.
+/// The corners of the convex hull of planar points (d = 2), counter-clockwise from the one of least
+/// x, by Andrew's chains: indices[0..result - 1], with room for n + 2. No corner but one of
+/// repeated points; none inside an edge. Fewer than 3 where the points lie on a line.
+int ConvexHull(int degree, const double* points, int* indices);
+/// Area of the convex hull of planar points, in squared units.
 double HullArea(int degree, const double* points);
 
 /// The largest squared tangent of the angle between a leg of the control polygon and the chord: no
