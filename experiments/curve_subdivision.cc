@@ -22,8 +22,10 @@ void Add(int path, const BezierSpan& span, bool is_first, const Subdivision& par
          std::vector<double>* coordinates, CurveSubdivision* whole) {
   for (std::size_t i = is_first ? 0 : 1; i < part.parameters.size(); ++i) {
     const double s = part.parameters[i];
-    whole->vertices.push_back({path, s == 1.0 ? span.end : span.begin + s * (span.end - span.begin)});
-    const double* point = part.vertices.data() + static_cast<std::ptrdiff_t>(i) * part.vertices.cols();
+    whole->vertices.push_back(
+        {path, s == 1.0 ? span.end : span.begin + s * (span.end - span.begin)});
+    const double* point =
+        part.vertices.data() + static_cast<std::ptrdiff_t>(i) * part.vertices.cols();
     coordinates->insert(coordinates->end(), point, point + part.vertices.cols());
   }
   ++whole->num_curves;
@@ -48,7 +50,7 @@ void AddError(const BezierCurve& curve, const Subdivision& part, CurveSubdivisio
       whole->num_curves == 1 ? bounds.lower : std::numeric_limits<double>::quiet_NaN();
 }
 
-void AppendControlPolygon(const Points& points, int across, int up, PlotSeries* series) {
+void AppendRows(const Points& points, int across, int up, PlotSeries* series) {
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     series->x.push_back(points(i, across));
     series->y.push_back(points(i, up));
@@ -65,15 +67,26 @@ void AppendCurve(const BezierCurve& curve, int across, int up, PlotSeries* serie
   }
 }
 
-// A NaN between two paths would be left out by the plot: each path is its own series.
+// Each path is its own series: the plot has no gaps within one.
 PlotPanel ProjectionPanel(const std::vector<BezierPath>& paths, const CurveSubdivision& result,
                           int across, int up) {
   static const char* const kAxes[] = {"x", "y", "z", "w"};
   constexpr int kPolygonColor = 7, kCurveColor = 0, kVertexColor = 1;
   PlotPanel panel;
   panel.equal_scale = true;
-  panel.x_label = kAxes[across];
-  panel.y_label = kAxes[up];
+  if (result.points.cols() > 2) {
+    panel.x_label = kAxes[across];
+    panel.y_label = kAxes[up];
+  }
+  // Below the curve, which many marks would hide.
+  constexpr std::int64_t kFewPieces = 100;
+  PlotSeries vertices;
+  vertices.label = "cuts";
+  vertices.style =
+      result.num_pieces <= kFewPieces ? PlotSeries::Style::kCircles : PlotSeries::Style::kPoints;
+  vertices.color = kVertexColor;
+  AppendRows(result.points, across, up, &vertices);
+  panel.series.push_back(std::move(vertices));
   for (const BezierPath& path : paths) {
     PlotSeries polygon, curve;
     polygon.style = PlotSeries::Style::kDashed;
@@ -85,18 +98,12 @@ PlotPanel ProjectionPanel(const std::vector<BezierPath>& paths, const CurveSubdi
       curve.label = "curve";
     }
     for (const BezierSpan& span : path.spans) {
-      AppendControlPolygon(span.curve.control_points(), across, up, &polygon);
+      AppendRows(span.curve.control_points(), across, up, &polygon);
       AppendCurve(span.curve, across, up, &curve);
     }
     panel.series.push_back(std::move(polygon));
     panel.series.push_back(std::move(curve));
   }
-  PlotSeries vertices;
-  vertices.label = "cuts";
-  vertices.style = PlotSeries::Style::kPoints;
-  vertices.color = kVertexColor;
-  AppendControlPolygon(result.points, across, up, &vertices);
-  panel.series.push_back(std::move(vertices));
   return panel;
 }
 

@@ -20,7 +20,7 @@ struct PolylineVertex {
 /// All curves of a drawing subdivided by one rule.
 struct CurveSubdivision {
   std::vector<PolylineVertex> vertices;
-  Points points;  ///< One row per vertex.
+  Points points;      ///< One row per vertex.
   double size = 0.0;  ///< L: the larger side of the box of all control points.
   int num_curves = 0;
   std::int64_t num_pieces = 0;

@@ -10,7 +10,8 @@ namespace batten {
 
 /// Reads curves to be subdivided (docs/formats.md), by the file's name:
 ///
-/// - `.json`: a fit.json, whose spline becomes its Bezier spans over the spline's own parameters, or
+/// - `.json`: a fit.json, whose spline becomes its Bezier spans over the spline's own parameters,
+/// or
 ///   an object with `control_points`, one Bezier curve over [0, 1];
 /// - `.svg`: ReadSvgPaths();
 /// - any other, and `-` for standard input: ReadDataSet(), the points being the control points of

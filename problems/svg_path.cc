@@ -265,7 +265,8 @@ std::vector<DataRange> FindPathData(const std::string& text) {
     for (std::size_t at = from + kElement.size(); at + 3 < element_end; ++at) {
       const bool begins = std::isspace(static_cast<unsigned char>(text[at])) != 0;
       const char quote = text[at + 3];
-      if (!begins || text.compare(at + 1, 2, "d=") != 0 || (quote != '"' && quote != '\'')) continue;
+      if (!begins || text.compare(at + 1, 2, "d=") != 0 || (quote != '"' && quote != '\''))
+        continue;
       const std::size_t begin = at + 4;
       ranges.push_back({begin, std::min(text.find(quote, begin), element_end)});
       break;
@@ -300,7 +301,8 @@ bool ReadSvgPaths(const std::string& path, std::vector<BezierPath>* paths, std::
   paths->clear();
   for (const DataRange& range : ranges) {
     std::size_t offset = 0;
-    const std::string_view data = std::string_view(text).substr(range.begin, range.end - range.begin);
+    const std::string_view data =
+        std::string_view(text).substr(range.begin, range.end - range.begin);
     if (ParseSvgPath(data, paths, &offset, error)) continue;
     *error = PlaceIn(path, text, range.begin + offset) + *error;
     return false;

@@ -33,8 +33,7 @@ BestCutRule::BestCutRule(CutMeasure measure, const OptionValues& options)
 
 bool BestCutRule::IsSearched(const CutTrial& trial) const {
   if (trial.depth() >= num_rounds_ || trial.degree() < 2) return false;
-  return !is_automatic_ ||
-         SquaredLegSlope(trial.degree(), trial.dimension(), trial.points()) > 1.0;
+  return !is_automatic_ || SquaredLegSlope(trial.degree(), trial.dimension(), trial.points()) > 1.0;
 }
 
 double BestCutRule::Choose(CutTrial* trial) {
@@ -48,7 +47,8 @@ double BestCutRule::Choose(CutTrial* trial) {
 CutRuleInfo FlatnessCutRule::ClassInfo() {
   CutRuleInfo info;
   info.name = "flatness";
-  info.summary = "where both parts' control polygons are flattest, in the first rounds; then at 1/2";
+  info.summary =
+      "where both parts' control polygons are flattest, in the first rounds; then at 1/2";
   info.source = kSource;
   info.options = Options();
   return info;

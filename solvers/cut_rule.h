@@ -16,8 +16,8 @@ struct CutRuleInfo {
   std::vector<OptionInfo> options;
 };
 
-/// Where the pieces of a curve are cut, under a name and with options. One object serves one thread;
-/// it may remember earlier pieces of a curve.
+/// Where the pieces of a curve are cut, under a name and with options. One object serves one
+/// thread; it may remember earlier pieces of a curve.
 class CutRule {
  public:
   virtual ~CutRule() = default;

@@ -12,8 +12,8 @@ namespace {
 
 // The built-in cut rules: one line each.
 CutRuleEntry (*const kBuiltInCutRules[])() = {
-    &MakeCutRuleEntry<HalfCutRule>,    &MakeCutRuleEntry<FlatnessCutRule>,
-    &MakeCutRuleEntry<HullCutRule>,    &MakeCutRuleEntry<LongestCutRule>,
+    &MakeCutRuleEntry<HalfCutRule>,  &MakeCutRuleEntry<FlatnessCutRule>,
+    &MakeCutRuleEntry<HullCutRule>,  &MakeCutRuleEntry<LongestCutRule>,
     &MakeCutRuleEntry<ShareCutRule>,
 };
 

@@ -148,8 +148,7 @@ class MinimumSearch {
     std::vector<CutPlace> minima;
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const bool below_left = i == 0 || places_[i].value < places_[i - 1].value;
-      const bool below_right =
-          i + 1 == places_.size() || places_[i].value <= places_[i + 1].value;
+      const bool below_right = i + 1 == places_.size() || places_[i].value <= places_[i + 1].value;
       if (below_left && below_right) minima.push_back(places_[i]);
     }
     places_ = std::move(minima);
@@ -177,9 +176,8 @@ std::vector<CutPlace> AllMinima(CutValue* value) { return MinimumSearch(value).R
 
 CutPlace ExactMinimum(CutValue* value) {
   const std::vector<CutPlace> minima = AllMinima(value);
-  return *std::min_element(minima.begin(), minima.end(), [](const CutPlace& a, const CutPlace& b) {
-    return a.value < b.value;
-  });
+  return *std::min_element(minima.begin(), minima.end(),
+                           [](const CutPlace& a, const CutPlace& b) { return a.value < b.value; });
 }
 
 }  // namespace batten

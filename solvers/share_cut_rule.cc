@@ -38,9 +38,8 @@ CutRuleInfo ShareCutRule::ClassInfo() {
   info.summary = "where both parts will come to whole numbers of pieces, counted by curvature";
   info.source = "docs/cut_rules/share.md";
   constexpr double kAim = 0.96;
-  info.options = {
-      OptionInfo::Real("aim", kAim, 0.1, 1.0,
-                       "The share of the predicted passing length that pieces shall have.")};
+  info.options = {OptionInfo::Real(
+      "aim", kAim, 0.1, 1.0, "The share of the predicted passing length that pieces shall have.")};
   return info;
 }
 
@@ -88,8 +87,9 @@ double ShareCutRule::DensityAt(const CutTrial& trial, double s) const {
 double ShareCutRule::Choose(CutTrial* trial) {
   if (trial->degree() < 2) return 0.5;
   if (!passing_) passing_.emplace(trial->stop(), trial->degree(), trial->dimension());
-  const int count =
-      trial->depth() < kDepthOfFewSamples ? std::max(kManySamples, trial->degree() - 1) : kFewSamples;
+  const int count = trial->depth() < kDepthOfFewSamples
+                        ? std::max(kManySamples, trial->degree() - 1)
+                        : kFewSamples;
   std::array<double, kMostSamples> densities;
   double pieces = 0.0;
   for (int k = 0; k < count; ++k) {

@@ -93,7 +93,8 @@ bool MakeRequest(const std::vector<std::string>& positional, Request* request, s
 bool WriteFiles(const Request& request, const CurveSubdivision& result, std::string* not_drawn,
                 std::string* error) {
   FileBatch batch;
-  if (WasGiven("out") && batch.Write(FLAGS_out, PolylineCsv(result), error) == nullptr) return false;
+  if (WasGiven("out") && batch.Write(FLAGS_out, PolylineCsv(result), error) == nullptr)
+    return false;
   if (WasGiven("report") &&
       batch.Write(FLAGS_report,
                   SubdivisionJson(request.path, request.rule_name, request.rule_options,
@@ -159,7 +160,8 @@ Command SubdivideCommand() {
       "FILE: control points of one Bezier curve as CSV or rows of numbers (- is standard input), a "
       "fit.json, whose spline is cut span by span, JSON with control_points, or an SVG file, whose "
       "paths are cut curve by curve (M, L, H, V, C, S, Q, T, Z).",
-      "The true error is a certified upper bound of the Hausdorff distance of curves and polylines. "
+      "The true error is a certified upper bound of the Hausdorff distance of curves and "
+      "polylines. "
       "Exit status 1: a bound on depth or pieces was hit; the polyline is written all the same."};
   command.examples = {
       "batten subdivide curve.csv --rule=flatness --relative_tolerance=1e-5 --out=polyline.csv "

@@ -37,8 +37,8 @@ TEST(CutValue, HullsOfAParabolasPartsShrinkWithTheCube) {
 }
 
 TEST(CutValue, FlatnessOfAParabolasPartsIsKnown) {
-  // C(u) = (2 u, 4 u (1 - u)): the inner points (u, 2 u) and (1 + u, 2 - 2 u) are 2 |area| / |chord|
-  // from their chords, area as above.
+  // C(u) = (2 u, 4 u (1 - u)): the inner points (u, 2 u) and (1 + u, 2 - 2 u) are 2 |area| /
+  // |chord| from their chords, area as above.
   const Points points = PointsOf({{0, 0}, {1, 2}, {2, 0}});
   for (const double u : kPlaces) {
     const double x = 2 * u, y = 4 * u * (1 - u);
@@ -87,10 +87,10 @@ TEST(CutValue, AnyAffineMapKeepsTheBestCutOfTheHullsButNotTheFlattest) {
   for (const double u : kPlaces) {
     EXPECT_NEAR(ValueAt(CutMeasure::kHullArea, mapped, u),
                 0.25 * ValueAt(CutMeasure::kHullArea, points, u), 30 * 16 * kEpsilon);
-    const double ratio = ValueAt(CutMeasure::kFlatness, mapped, u) /
-                         ValueAt(CutMeasure::kFlatness, points, u);
-    const double at_half = ValueAt(CutMeasure::kFlatness, mapped, 0.5) /
-                           ValueAt(CutMeasure::kFlatness, points, 0.5);
+    const double ratio =
+        ValueAt(CutMeasure::kFlatness, mapped, u) / ValueAt(CutMeasure::kFlatness, points, u);
+    const double at_half =
+        ValueAt(CutMeasure::kFlatness, mapped, 0.5) / ValueAt(CutMeasure::kFlatness, points, 0.5);
     largest_change = std::max(largest_change, std::abs(ratio / at_half - 1.0));
   }
   EXPECT_GT(largest_change, 0.1);
