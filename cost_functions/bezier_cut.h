@@ -17,7 +17,7 @@ namespace batten {
 /// Both parts of a Bezier curve cut at a differentiable place u.
 template <typename T>
 struct BezierParts {
-  std::vector<T> first;   ///< n + 1 points, d coordinates each.
+  std::vector<T> first;  ///< n + 1 points, d coordinates each.
   std::vector<T> second;
 };
 
@@ -145,7 +145,8 @@ class CutHullArea {
       const T* origin = part.data() + 2 * hull[0];
       const T* a = part.data() + 2 * hull[k];
       const T* b = part.data() + 2 * hull[k + 1];
-      twice_area += (a[0] - origin[0]) * (b[1] - origin[1]) - (a[1] - origin[1]) * (b[0] - origin[0]);
+      twice_area +=
+          (a[0] - origin[0]) * (b[1] - origin[1]) - (a[1] - origin[1]) * (b[0] - origin[0]);
     }
     return twice_area > T(0.0) ? sqrt(0.5 * twice_area) : T(0.0);
   }

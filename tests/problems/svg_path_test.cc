@@ -33,8 +33,8 @@ const Points& PointsAt(const std::vector<BezierPath>& paths, std::size_t path, s
 }
 
 TEST(SvgPath, ReadsEveryCommandInBothCases) {
-  const auto absolute = Parsed(
-      "M 1 2 L 3 4 H 5 V 6 C 7 8 9 10 11 12 S 15 16 17 18 Q 19 20 21 22 T 25 26 Z");
+  const auto absolute =
+      Parsed("M 1 2 L 3 4 H 5 V 6 C 7 8 9 10 11 12 S 15 16 17 18 Q 19 20 21 22 T 25 26 Z");
   const auto relative = Parsed("m1,2l2 2h2v2c2 2 4 4 6 6s4 4 6 6q2 2 4 4t4 4z");
   ASSERT_EQ(absolute.size(), 1);
   ASSERT_EQ(absolute[0].spans.size(), 8);
@@ -58,7 +58,7 @@ TEST(SvgPath, ReadsEveryCommandInBothCases) {
 }
 
 TEST(SvgPath, NumbersMayTouch) {
-  const auto paths = Parsed("M0-1.5.5l.5.5-1e1+2E-1");
+  const auto paths = Parsed("M0-1.5.5.5l.5.5-1e1+2E-1");
   EXPECT_EQ(PointsAt(paths, 0, 0), PointsOf({{0, -1.5}, {0.5, 0.5}}));  // a pair after M is a line
   EXPECT_EQ(PointsAt(paths, 0, 1), PointsOf({{0.5, 0.5}, {1.0, 1.0}}));
   EXPECT_EQ(PointsAt(paths, 0, 2), PointsOf({{1.0, 1.0}, {-9.0, 1.2}}));

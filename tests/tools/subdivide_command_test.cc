@@ -18,13 +18,13 @@ nlohmann::json ReadJson(const std::string& path) { return nlohmann::json::parse(
 TEST(SubdivideCommand, WritesPolylineReportAndFigure) {
   const TemporaryFolder folder;
   const std::string curve = folder.Write("curve.csv", kCubic);
-  const Ended ended = RunBatten({"subdivide", curve, "--rule=flatness", "--relative_tolerance=1e-4",
-                                 "--out=" + (folder / "polyline.csv"),
-                                 "--figure=" + (folder / "cut.svg"),
-                                 "--report=" + (folder / "cut.json")});
+  const Ended ended =
+      RunBatten({"subdivide", curve, "--rule=flatness", "--relative_tolerance=1e-4",
+                 "--out=" + (folder / "polyline.csv"), "--figure=" + (folder / "cut.svg"),
+                 "--report=" + (folder / "cut.json")});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(folder.Names(), ElementsAre("curve.csv", "cut.dat", "cut.gp", "cut.json", "cut.svg",
-                                          "polyline.csv"));
+  EXPECT_THAT(folder.Names(),
+              ElementsAre("curve.csv", "cut.dat", "cut.gp", "cut.json", "cut.svg", "polyline.csv"));
   const nlohmann::json report = ReadJson(folder / "cut.json");
   EXPECT_EQ(report["format"], "batten.subdivision/1");
   EXPECT_EQ(report["rule"], "flatness");
@@ -59,9 +59,8 @@ TEST(SubdivideCommand, CutsAFitSpanBySpan) {
                        "--out=" + fit})
                 .status,
             0);
-  const Ended ended =
-      RunBatten({"subdivide", fit, "--stop=segment", "--relative_tolerance=1e-4",
-                 "--out=" + (folder / "p.csv"), "--report=" + (folder / "r.json")});
+  const Ended ended = RunBatten({"subdivide", fit, "--stop=segment", "--relative_tolerance=1e-4",
+                                 "--out=" + (folder / "p.csv"), "--report=" + (folder / "r.json")});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const nlohmann::json report = ReadJson(folder / "r.json");
   EXPECT_EQ(report["curves"], 30);
@@ -114,7 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
     SubdivideCommand, BadCurveFile,
     ::testing::Values(
         BadCurve{"NotANumber", "c.csv", "x,y\n0,0\n1,nan\n", "c.csv:3:2: "},
-        BadCurve{"Weights", "c.csv", "x,y,weight\n0,0,1\n1,0,1\n", "c.csv: found the column weight"},
+        BadCurve{"Weights", "c.csv", "x,y,weight\n0,0,1\n1,0,1\n",
+                 "c.csv: found the column weight"},
         BadCurve{"BrokenJson", "c.json", "{\"spline\": ", "c.json: line 1"},
         BadCurve{"NoSpline", "c.json", "{\"a\": 1}", "c.json: /spline"},
         BadCurve{"RaggedPoints", "c.json", "{\"control_points\": [[0, 0], [1]]}",
