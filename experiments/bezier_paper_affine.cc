@@ -126,15 +126,17 @@ Experiment BezierPaperAffine() {
   experiment.title = "The stop rule under affine maps";
   experiment.text =
       "30 curves of degree 16 of the family `walk`, turned, scaled, sheared and stretched, then "
-      "halved by the paper's stop rule. Its distances are relative to the larger side of an upright "
+      "halved by the paper's stop rule. Its distances are relative to the larger side of an "
+      "upright "
       "box, which turns into another length when the curve is turned; shear and stretching change "
       "distances themselves.";
   experiment.run = &RunAffine;
   experiment.shown = &ShownChanges;
-  experiment.claims = {{"the stop rule does not change under affine maps", "section on the stop rule",
-                        "holds where no map changes the number of pieces or rounds of any curve; in "
-                        "part where some kind of map does not",
-                        &JudgeInvariance}};
+  experiment.claims = {
+      {"the stop rule does not change under affine maps", "section on the stop rule",
+       "holds where no map changes the number of pieces or rounds of any curve; in "
+       "part where some kind of map does not",
+       &JudgeInvariance}};
   return experiment;
 }
 

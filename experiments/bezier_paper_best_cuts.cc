@@ -88,8 +88,8 @@ Judgement JudgeShares(const ExperimentTables& tables, double low, double high, i
       if (std::isnan(share)) return Judgement();
       ++all;
       holding += share >= wanted ? 1 : 0;
-      judgement.because += (judgement.because.empty() ? "" : "; ") + measure + ", " + family + ": " +
-                           Rounded(100.0 * share, 0) + " %";
+      judgement.because += (judgement.because.empty() ? "" : "; ") + measure + ", " + family +
+                           ": " + Rounded(100.0 * share, 0) + " %";
     }
   }
   judgement.verdict = all == 0         ? ClaimVerdict::kUndecided

@@ -53,8 +53,7 @@ std::optional<Found> BySolver(const std::string& solver, CutMeasure measure,
   RunResult run;
   CHECK(Run(*problem, spec, run_spec, &run, &error)) << error;
   if (!run.skipped.empty()) return std::nullopt;
-  return Found{run.x[0], static_cast<double>(run.counts.distinct_points),
-               run.seconds};
+  return Found{run.x[0], static_cast<double>(run.counts.distinct_points), run.seconds};
 }
 
 /// Which of the local minima, counted from the least, `u` is at: "global", "other", "none".
@@ -141,8 +140,10 @@ Judgement JudgeGrid(const ExperimentTables& tables) {
     const double share = near / static_cast<double>(rows.num_rows());
     ++measures;
     holding += share >= kNearlyAll ? 1 : 0;
-    judgement.because += (judgement.because.empty() ? "" : "; ") + measure + ": within 10 % of the "
-                         "least value on " + Rounded(100.0 * share, 0) + " % of the curves";
+    judgement.because += (judgement.because.empty() ? "" : "; ") + measure +
+                         ": within 10 % of the "
+                         "least value on " +
+                         Rounded(100.0 * share, 0) + " % of the curves";
   }
   judgement.verdict = measures == 0         ? ClaimVerdict::kUndecided
                       : holding == measures ? ClaimVerdict::kHolds
@@ -159,17 +160,19 @@ Experiment BezierPaperMinima() {
   experiment.title = "Which minimum each method finds";
   experiment.text =
       "The cut as a problem of one variable, from u = 1/2: ten curves each of degrees 4, 8, 12 and "
-      "20 in each family. `exact` brackets all stationary points in Bernstein form on panels; `grid` "
+      "20 in each family. `exact` brackets all stationary points in Bernstein form on panels; "
+      "`grid` "
       "takes the best of 13 values; `lbfgs`, `ceres_lbfgs` and `ceres_lm` descend to |g| <= 1e-10 "
-      "|g(start)|. \"No minimum\" is a place more than 1e-3 from all minima. Hull areas have kinks, at "
+      "|g(start)|. \"No minimum\" is a place more than 1e-3 from all minima. Hull areas have "
+      "kinks, at "
       "which methods for smooth functions stop.";
   experiment.run = &RunMinima;
   experiment.shown = &ShownMinima;
-  experiment.claims = {
-      {"13 values are enough to find the best cut", "section on the grid",
-       "holds where on at least 95 % of the curves the best of the grid is within 10 % of the least "
-       "value, for both measures; in part where for one",
-       &JudgeGrid}};
+  experiment.claims = {{"13 values are enough to find the best cut", "section on the grid",
+                        "holds where on at least 95 % of the curves the best of the grid is within "
+                        "10 % of the least "
+                        "value, for both measures; in part where for one",
+                        &JudgeGrid}};
   return experiment;
 }
 

@@ -33,7 +33,8 @@ bool RunOneCut(const ExperimentRun& /*run*/, ExperimentTables* tables, std::stri
   CsvTable& table = (*tables)[""] = CsvTable({"rule", "u", "flatness", "hull_area"});
   CsvTable& places = (*tables)["values"] = CsvTable({"u", "flatness", "hull_area"});
   for (const OneCut& cut : cuts) {
-    table.AddRow({cut.rule, NumberText(cut.u), NumberText(flatness(cut.u)), NumberText(hull(cut.u))});
+    table.AddRow(
+        {cut.rule, NumberText(cut.u), NumberText(flatness(cut.u)), NumberText(hull(cut.u))});
   }
   constexpr int kSteps = 200;
   for (int k = 1; k < kSteps; ++k) {

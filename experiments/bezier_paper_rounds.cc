@@ -18,9 +18,8 @@ constexpr int kDegrees[] = {12, 16, 20, 25};
 constexpr const char* kRules[] = {"flatness", "hull"};
 
 bool RunRounds(const ExperimentRun& run, ExperimentTables* tables, std::string* /*error*/) {
-  CsvTable& table = (*tables)[""] =
-      CsvTable({"family", "rule", "N", "seconds_ratio", "seconds_low", "seconds_high",
-                "pieces_ratio", "mean_rounds"});
+  CsvTable& table = (*tables)[""] = CsvTable({"family", "rule", "N", "seconds_ratio", "seconds_low",
+                                              "seconds_high", "pieces_ratio", "mean_rounds"});
   const SubdivisionOptions options = PaperSubdivision(SubdivisionMode::kUniform);
   double done = 0.0;
   const double cells = std::size(kRules) * static_cast<double>(CurveFamilies().size());
@@ -69,12 +68,12 @@ Judgement JudgeFallsThenRises(const ExperimentTables& tables) {
     const auto best = static_cast<int>(least - ratios.begin());
     constexpr double kSeen = 0.02;
     ++all;
-    holding += best > 0 && best < kMostRounds && *least <= 1.0 - kSeen &&
-                       ratios.back() >= *least + kSeen
-                   ? 1
-                   : 0;
-    judgement.because += (judgement.because.empty() ? "" : "; ") + family + ": least at N = " +
-                         std::to_string(best) + " with " + Rounded(*least, 2) +
+    holding +=
+        best > 0 && best < kMostRounds && *least <= 1.0 - kSeen && ratios.back() >= *least + kSeen
+            ? 1
+            : 0;
+    judgement.because += (judgement.because.empty() ? "" : "; ") + family +
+                         ": least at N = " + std::to_string(best) + " with " + Rounded(*least, 2) +
                          " of the time of N = 0, at N = 8 " + Rounded(ratios.back(), 2);
   }
   judgement.verdict = all == 0         ? ClaimVerdict::kUndecided
@@ -109,16 +108,17 @@ Experiment BezierPaperRounds() {
   experiment.name = "rounds";
   experiment.title = "How many rounds are cut at the best place: N from 0 to 8";
   experiment.text =
-      "Uniform rounds; 40 curves each of degrees 12, 16, 20 and 25 in each family. A search costs 13 "
+      "Uniform rounds; 40 curves each of degrees 12, 16, 20 and 25 in each family. A search costs "
+      "13 "
       "cuts, so that from some N on it must cost more than it can save.";
   experiment.run = &RunRounds;
-  experiment.claims = {
-      {"time falls, then rises with N", "section on N",
-       "holds where in every family the median time of the flatness rule is least at an N from 1 to "
-       "7, at least 2 % below N = 0 and N = 8; in part where in some",
-       &JudgeFallsThenRises}};
-  experiment.figures = {{"rounds_time", "Median time against N, over that of N = 0.", 3,
-                         &RoundsPanels}};
+  experiment.claims = {{"time falls, then rises with N", "section on N",
+                        "holds where in every family the median time of the flatness rule is least "
+                        "at an N from 1 to "
+                        "7, at least 2 % below N = 0 and N = 8; in part where in some",
+                        &JudgeFallsThenRises}};
+  experiment.figures = {
+      {"rounds_time", "Median time against N, over that of N = 0.", 3, &RoundsPanels}};
   return experiment;
 }
 

@@ -33,6 +33,7 @@ RuleRun RunRule(CutRule* rule, const BezierCurve& curve, const SubdivisionOption
   RuleRun run;
   std::vector<double> seconds;
   std::string error;
+  CHECK(SubdivideBy(rule, curve, options, &run.result, &error)) << error;  // fills the caches
   for (int k = 0; k < repetitions; ++k) {
     const auto begin = std::chrono::steady_clock::now();
     CHECK(SubdivideBy(rule, curve, options, &run.result, &error)) << error;
@@ -53,9 +54,20 @@ double ErrorOverTolerance(const BezierCurve& curve, const SubdivisionOptions& op
 }
 
 std::vector<std::string> CellStatistics::Columns() {
-  return {"curves",     "pieces_ratio", "pieces_low",  "pieces_high",    "seconds_ratio",
-          "seconds_low", "seconds_high", "time_wins",   "time_losses",    "mean_pieces",
-          "mean_rounds", "cuts_per_piece", "error_over_tolerance", "failing"};
+  return {"curves",
+          "pieces_ratio",
+          "pieces_low",
+          "pieces_high",
+          "seconds_ratio",
+          "seconds_low",
+          "seconds_high",
+          "time_wins",
+          "time_losses",
+          "mean_pieces",
+          "mean_rounds",
+          "cuts_per_piece",
+          "error_over_tolerance",
+          "failing"};
 }
 
 void CellStatistics::Add(const RuleRun& run, const RuleRun& half) {
@@ -75,34 +87,37 @@ std::vector<std::string> CellStatistics::Cells() const {
   const MedianWithInterval pieces = MedianOf(piece_ratios_), seconds = MedianOf(second_ratios_);
   const WinCounts wins = CountWins(second_ratios_);
   const auto count = static_cast<double>(piece_ratios_.size());
-  return {NumberText(count),
-          NumberText(pieces.median),
-          NumberText(pieces.low),
-          NumberText(pieces.high),
-          NumberText(seconds.median),
-          NumberText(seconds.low),
-          NumberText(seconds.high),
-          std::to_string(wins.wins),
-          std::to_string(wins.losses),
-          NumberText(pieces_ / count),
-          NumberText(rounds_ / count),
-          NumberText(cuts_ / pieces_),
-          NumberText(largest_error_),
-          std::to_string(num_failing_)};
+  return {NumberText(count),           NumberText(pieces.median),   NumberText(pieces.low),
+          NumberText(pieces.high),     NumberText(seconds.median),  NumberText(seconds.low),
+          NumberText(seconds.high),    std::to_string(wins.wins),   std::to_string(wins.losses),
+          NumberText(pieces_ / count), NumberText(rounds_ / count), NumberText(cuts_ / pieces_),
+          NumberText(largest_error_),  std::to_string(num_failing_)};
 }
 
-std::vector<std::string> ComparedRules(SubdivisionMode mode) {
-  std::vector<std::string> rules = {"half", "flatness", "flatness/rounds=8/choice=automatic", "hull",
-                                    "share"};
-  if (mode == SubdivisionMode::kAdaptive) rules.emplace_back("longest");
+const std::vector<SubdivisionSetting>& SubdivisionSettings() {
+  static const auto& settings = *[] {
+    SubdivisionOptions certified = PaperSubdivision(SubdivisionMode::kAdaptive);
+    certified.stop = StopMeasure::kPolygon;
+    return new std::vector<SubdivisionSetting>{
+        {"uniform", PaperSubdivision(SubdivisionMode::kUniform)},
+        {"adaptive", PaperSubdivision(SubdivisionMode::kAdaptive)},
+        {"certified", certified}};
+  }();
+  return settings;
+}
+
+std::vector<std::string> ComparedRules(const SubdivisionSetting& setting) {
+  std::vector<std::string> rules = {"half", "flatness", "flatness/rounds=8/choice=automatic",
+                                    "hull", "share"};
+  if (setting.options.mode == SubdivisionMode::kAdaptive) rules.emplace_back("longest");
   return rules;
 }
 
 void CompareRules(const std::vector<BezierCurve>& curves, const std::vector<std::string>& first,
                   int repetitions, int certified, CsvTable* table) {
-  for (const SubdivisionMode mode : {SubdivisionMode::kUniform, SubdivisionMode::kAdaptive}) {
-    const SubdivisionOptions options = PaperSubdivision(mode);
-    const std::vector<std::string> names = ComparedRules(mode);
+  for (const SubdivisionSetting& setting : SubdivisionSettings()) {
+    const SubdivisionOptions& options = setting.options;
+    const std::vector<std::string> names = ComparedRules(setting);
     std::vector<std::unique_ptr<CutRule>> rules;
     for (const std::string& name : names) rules.push_back(CheckedCutRule(name));
     std::vector<CellStatistics> cells(names.size());
@@ -118,15 +133,15 @@ void CompareRules(const std::vector<BezierCurve>& curves, const std::vector<std:
     }
     for (std::size_t r = 0; r < rules.size(); ++r) {
       std::vector<std::string> row = first;
-      row.insert(row.end(), {ToString(mode), names[r]});
+      row.insert(row.end(), {setting.name, names[r]});
       for (std::string& cell : cells[r].Cells()) row.push_back(std::move(cell));
       table->AddRow(std::move(row));
     }
   }
 }
 
-CsvTable RowsOf(const CsvTable& table, SubdivisionMode mode, const std::string& rule) {
-  return table.Where("mode", ToString(mode)).Where("rule", rule);
+CsvTable RowsOf(const CsvTable& table, const std::string& setting, const std::string& rule) {
+  return table.Where("setting", setting).Where("rule", rule);
 }
 
 }  // namespace batten

@@ -21,7 +21,7 @@ SubdivisionOptions PaperSubdivision(SubdivisionMode mode);
 /// One curve cut by one rule.
 struct RuleRun {
   Subdivision result;
-  double seconds = 0.0;  ///< Median of the repetitions.
+  double seconds = 0.0;  ///< Median of the repetitions behind one run that is not counted.
 };
 RuleRun RunRule(CutRule* rule, const BezierCurve& curve, const SubdivisionOptions& options,
                 int repetitions);
@@ -50,17 +50,25 @@ class CellStatistics {
   int num_failing_ = 0;
 };
 
-/// Rules that are compared in a mode; halving is the first.
-std::vector<std::string> ComparedRules(SubdivisionMode mode);
+/// How curves are subdivided: "uniform", "adaptive", both by the paper's stop, and "certified",
+/// adaptive by the polygon's distance from the chord's segment, which bounds the true error.
+struct SubdivisionSetting {
+  std::string name;
+  SubdivisionOptions options;
+};
+const std::vector<SubdivisionSetting>& SubdivisionSettings();
 
-/// Runs the rules of both modes on each curve, one after the other on the same curve, and adds a row
-/// per mode and rule behind `first` to `table`, whose columns are first, mode, rule and
+/// Rules that are compared in a setting; halving is the first.
+std::vector<std::string> ComparedRules(const SubdivisionSetting& setting);
+
+/// Runs the rules of all settings on each curve, one after the other on the same curve, and adds a
+/// row per setting and rule behind `first` to `table`, whose columns are first, setting, rule and
 /// CellStatistics::Columns(). Every `certified`-th curve's true error is certified.
 void CompareRules(const std::vector<BezierCurve>& curves, const std::vector<std::string>& first,
                   int repetitions, int certified, CsvTable* table);
 
-/// The rows of a mode and rule.
-CsvTable RowsOf(const CsvTable& table, SubdivisionMode mode, const std::string& rule);
+/// The rows of a setting and rule.
+CsvTable RowsOf(const CsvTable& table, const std::string& setting, const std::string& rule);
 
 }  // namespace batten
 

@@ -34,36 +34,36 @@ constexpr double kLargeSaving = 0.5;
 
 bool RunTable(const ExperimentRun& run, ExperimentTables* tables, std::string* /*error*/) {
   CsvTable& table = (*tables)[""] =
-      CsvTable({"degree", "mode", "rule", "pieces", "rounds", "cuts", "evaluations", "seconds",
+      CsvTable({"degree", "setting", "rule", "pieces", "rounds", "cuts", "evaluations", "seconds",
                 "saving", "error_over_tolerance", "published_seconds", "published_rounds"});
   double done = 0.0;
   for (const PublishedRow& published : kPublished) {
     if (InterruptRequested()) return true;
     if (run.progress) run.progress(done++ / std::size(kPublished), "curves");
     const BezierCurve curve = FamilyCurve("walk", published.degree, 0);
-    for (const SubdivisionMode mode : {SubdivisionMode::kUniform, SubdivisionMode::kAdaptive}) {
-      const SubdivisionOptions options = PaperSubdivision(mode);
-      std::vector<std::string> names = ComparedRules(mode);
+    for (const SubdivisionSetting& setting : SubdivisionSettings()) {
+      const SubdivisionOptions& options = setting.options;
+      std::vector<std::string> names = ComparedRules(setting);
       names.insert(names.end(), {"flatness/search=exact", "hull/search=exact"});
       double half_seconds = 0.0;
       for (const std::string& name : names) {
         const RuleRun found = RunRule(CheckedCutRule(name).get(), curve, options, run.repetitions);
         if (name == "half") half_seconds = found.seconds;
-        const bool is_papers = mode == SubdivisionMode::kUniform &&
-                               (name == "half" || name == "flatness" || name == "hull");
+        const bool is_papers =
+            setting.name == "uniform" && (name == "half" || name == "flatness" || name == "hull");
         const double seconds = name == "half"       ? published.half_seconds
                                : name == "flatness" ? published.flatness_seconds
                                                     : published.hull_seconds;
         const int rounds = name == "half"       ? published.half_rounds
                            : name == "flatness" ? published.flatness_rounds
                                                 : published.hull_rounds;
-        table.AddRow({std::to_string(published.degree), ToString(mode), name,
-                      std::to_string(found.result.num_pieces()),
-                      std::to_string(found.result.rounds), std::to_string(found.result.cuts),
-                      std::to_string(found.result.evaluations), NumberText(found.seconds),
-                      NumberText(1.0 - found.seconds / half_seconds),
-                      NumberText(ErrorOverTolerance(curve, options, found.result)),
-                      is_papers ? NumberText(seconds) : "", is_papers ? std::to_string(rounds) : ""});
+        table.AddRow(
+            {std::to_string(published.degree), setting.name, name,
+             std::to_string(found.result.num_pieces()), std::to_string(found.result.rounds),
+             std::to_string(found.result.cuts), std::to_string(found.result.evaluations),
+             NumberText(found.seconds), NumberText(1.0 - found.seconds / half_seconds),
+             NumberText(ErrorOverTolerance(curve, options, found.result)),
+             is_papers ? NumberText(seconds) : "", is_papers ? std::to_string(rounds) : ""});
       }
     }
   }
@@ -78,8 +78,8 @@ struct RoundsSaved {
   double saving = 0.0;
 };
 std::vector<RoundsSaved> SavedBy(const ExperimentTables& tables, const std::string& rule) {
-  const CsvTable half = RowsOf(tables.at(""), SubdivisionMode::kUniform, "half");
-  const CsvTable other = RowsOf(tables.at(""), SubdivisionMode::kUniform, rule);
+  const CsvTable half = RowsOf(tables.at(""), "uniform", "half");
+  const CsvTable other = RowsOf(tables.at(""), "uniform", rule);
   std::vector<RoundsSaved> saved;
   for (std::size_t k = 0; k < std::min(half.num_rows(), other.num_rows()); ++k) {
     saved.push_back({other.Text(k, "degree"), half.Number(k, "rounds") - other.Number(k, "rounds"),
@@ -97,12 +97,13 @@ Judgement JudgeFlatness(const ExperimentTables& tables) {
   for (const RoundsSaved& row : saved) {
     large += row.saving >= kLargeSaving ? 1 : 0;
     losing += row.saving <= -kLargeSaving ? 1 : 0;
-    judgement.because += (judgement.because.empty() ? "savings: degree " : "; ") + row.degree + ": " +
-                         Rounded(100.0 * row.saving, 0) + " %";
+    judgement.because += (judgement.because.empty() ? "savings: degree " : "; ") + row.degree +
+                         ": " + Rounded(100.0 * row.saving, 0) + " %";
   }
   constexpr int kClaimed = 4;
-  judgement.because += ". Half and more is saved at " + std::to_string(large) +
-                       " of " + std::to_string(saved.size()) + " degrees; at " + std::to_string(losing) + " the time rises by half or more";
+  judgement.because += ". Half and more is saved at " + std::to_string(large) + " of " +
+                       std::to_string(saved.size()) + " degrees; at " + std::to_string(losing) +
+                       " the time rises by half or more";
   judgement.verdict = large >= kClaimed && losing == 0 ? ClaimVerdict::kHolds
                       : large > 0                      ? ClaimVerdict::kInPart
                                                        : ClaimVerdict::kDoesNotHold;
@@ -123,9 +124,9 @@ Judgement JudgeHull(const ExperimentTables& tables) {
   judgement.because = "the hull rule saves more than 5 % at " + std::to_string(saving) + " of " +
                       std::to_string(saved.size()) + " degrees; its worst saving is " +
                       Rounded(100.0 * worst, 0) + " %";
-  judgement.verdict = saving == 0                                    ? ClaimVerdict::kHolds
+  judgement.verdict = saving == 0                                   ? ClaimVerdict::kHolds
                       : 2 * saving < static_cast<int>(saved.size()) ? ClaimVerdict::kInPart
-                                                                     : ClaimVerdict::kDoesNotHold;
+                                                                    : ClaimVerdict::kDoesNotHold;
   return judgement;
 }
 
@@ -133,7 +134,7 @@ CsvTable ShownTable(const ExperimentTables& tables) {
   CsvTable shown({"degree", "rule", "pieces", "rounds", "ms", "saving %", "true error / tolerance",
                   "published s", "published rounds"});
   constexpr int kDigits = 3;
-  const CsvTable uniform = tables.at("").Where("mode", "uniform");
+  const CsvTable uniform = tables.at("").Where("setting", "uniform");
   for (std::size_t k = 0; k < uniform.num_rows(); ++k) {
     shown.AddRow({uniform.Text(k, "degree"), uniform.Text(k, "rule"), uniform.Text(k, "pieces"),
                   uniform.Text(k, "rounds"),
@@ -152,9 +153,9 @@ std::vector<PlotPanel> SavingPanels(const ExperimentTables& tables) {
   panel.y_label = "ratio";
   panel.log_y = true;
   int color = 0;
-  const CsvTable half = RowsOf(tables.at(""), SubdivisionMode::kUniform, "half");
+  const CsvTable half = RowsOf(tables.at(""), "uniform", "half");
   for (const char* rule : {"flatness", "hull", "share"}) {
-    const CsvTable rows = RowsOf(tables.at(""), SubdivisionMode::kUniform, rule);
+    const CsvTable rows = RowsOf(tables.at(""), "uniform", rule);
     PlotSeries ours, published;
     ours.label = rule;
     ours.color = published.color = color++;
@@ -187,10 +188,12 @@ Experiment BezierPaperTable() {
   experiment.run = &RunTable;
   experiment.shown = &ShownTable;
   experiment.claims = {
-      {"the flatness rule saves 65 to 74 % at four of ten degrees, and loses nothing to speak of at "
+      {"the flatness rule saves 65 to 74 % at four of ten degrees, and loses nothing to speak of "
+       "at "
        "the others",
        "Table",
-       "holds where it saves half of the time at four degrees or more and nowhere costs half again; "
+       "holds where it saves half of the time at four degrees or more and nowhere costs half "
+       "again; "
        "in part where it saves half at some degree",
        &JudgeFlatness},
       {"the hull rule saves nothing, and loses up to 336 %", "Table",

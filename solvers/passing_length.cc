@@ -10,7 +10,8 @@ namespace {
 double SquaredFactor(const StopTest& stop, int n) {
   const double limit = stop.limit();
   switch (stop.measure()) {
-    case StopMeasure::kControlPoints: {
+    case StopMeasure::kControlPoints:
+    case StopMeasure::kPolygon: {
       const double highest = 0.5 * (n / 2) * (n - n / 2);  // whole numbers: the middle point
       return limit / (highest * highest);
     }

@@ -91,6 +91,29 @@ bool IsNearChordIn(int n, const double* points, double squared_limit) {
 }
 
 template <int d>
+bool IsNearSegmentIn(int n, const double* points, double squared_limit) {
+  const double* const last = points + n * d;
+  double chord[d], v[d];
+  Subtract<d>(last, points, chord);
+  const double squared_chord = Dot<d>(chord, chord);
+  for (int i = 1; i < n; ++i) {
+    Subtract<d>(points + i * d, points, v);
+    const double along = Dot<d>(v, chord);
+    bool is_near = false;
+    if (!(along > 0.0)) {
+      is_near = Dot<d>(v, v) <= squared_limit;
+    } else if (along >= squared_chord) {
+      Subtract<d>(points + i * d, last, v);
+      is_near = Dot<d>(v, v) <= squared_limit;
+    } else {
+      is_near = SquaredCross<d>(v, chord) <= squared_limit * squared_chord;
+    }
+    if (!is_near) return false;
+  }
+  return true;
+}
+
+template <int d>
 double SquaredLegSlopeIn(int n, const double* points) {
   double chord[d], leg[d];
   Subtract<d>(points + n * d, points, chord);
@@ -136,6 +159,29 @@ bool IsNearChord(int degree, int dimension, const double* points, double squared
     default:
       return IsNearChordIn<4>(degree, points, squared_limit);
   }
+}
+
+bool IsNearSegment(int degree, int dimension, const double* points, double squared_limit) {
+  switch (dimension) {
+    case 1:
+      return IsNearSegmentIn<1>(degree, points, squared_limit);
+    case 2:
+      return IsNearSegmentIn<2>(degree, points, squared_limit);
+    case 3:
+      return IsNearSegmentIn<3>(degree, points, squared_limit);
+    default:
+      return IsNearSegmentIn<4>(degree, points, squared_limit);
+  }
+}
+
+double SquaredPolygonDistance(int degree, int dimension, const double* points) {
+  const double* last = points + degree * dimension;
+  double farthest = 0.0;
+  for (int i = 1; i < degree; ++i) {
+    farthest =
+        std::max(farthest, SquaredSegmentDistance(dimension, points + i * dimension, points, last));
+  }
+  return farthest;
 }
 
 Quotient Flatness(int degree, int dimension, const double* points) {

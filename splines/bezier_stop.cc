@@ -15,6 +15,7 @@ struct NamedMeasure {
 };
 constexpr NamedMeasure kNames[] = {
     {StopMeasure::kControlPoints, "control_points"},
+    {StopMeasure::kPolygon, "polygon"},
     {StopMeasure::kHullArea, "hull_area"},
     {StopMeasure::kFlatness, "flatness"},
     {StopMeasure::kSegment, "segment"},
@@ -35,6 +36,7 @@ struct Limits {
 Limits LimitsOf(StopMeasure measure, double tolerance, double side, double rounding, int degree) {
   switch (measure) {
     case StopMeasure::kControlPoints:
+    case StopMeasure::kPolygon:
       return {tolerance * side * tolerance * side, rounding * rounding};
     case StopMeasure::kSegment:
       return {tolerance * side, rounding};
@@ -97,6 +99,8 @@ StopValue StopTest::Measured(const double* points) const {
       const Quotient squared = SquaredChordDistance(degree_, dimension_, points);
       return {squared.numerator, limit_ * squared.denominator, power()};
     }
+    case StopMeasure::kPolygon:
+      return {SquaredPolygonDistance(degree_, dimension_, points), limit_, power()};
     case StopMeasure::kFlatness: {
       const Quotient sum = Flatness(degree_, dimension_, points);
       return {sum.numerator, limit_ * sum.denominator, power()};
@@ -118,6 +122,7 @@ StopValue StopTest::Measured(const double* points) const {
 int StopTest::power() const {
   switch (measure_) {
     case StopMeasure::kControlPoints:
+    case StopMeasure::kPolygon:
     case StopMeasure::kFlatness:
       return kFourth;
     case StopMeasure::kHullArea:
@@ -132,6 +137,9 @@ int StopTest::power() const {
 bool StopTest::Passes(const double* points) const {
   if (measure_ == StopMeasure::kControlPoints) {
     return IsNearChord(degree_, dimension_, points, limit_) || IsPoint(points);
+  }
+  if (measure_ == StopMeasure::kPolygon) {
+    return IsNearSegment(degree_, dimension_, points, limit_) || IsPoint(points);
   }
   return Value(points).passes();
 }

@@ -12,6 +12,7 @@ namespace batten {
 /// are relative to L, the larger side of the original control points' box.
 enum class StopMeasure {
   kControlPoints,  ///< Largest distance of an inner control point from the chord's line, / L.
+  kPolygon,        ///< The same from the chord's segment: it bounds the true error, / L.
   kHullArea,       ///< Area of the hull of the control points, / L^2; planar curves.
   kFlatness,       ///< Sum of squared distances of inner control points from the line, / L^2.
   kSegment,        ///< Largest distance of the curve itself from the chord's segment, / L.
@@ -51,7 +52,7 @@ class StopTest {
   StopMeasure measure() const { return measure_; }
   int power() const;  ///< StopValue::power.
   /// Largest allowed value: in the curve's own units, squared where the measure is an area; the
-  /// squared distance of kControlPoints; of kAngle the squared tangent.
+  /// squared distance of kControlPoints and kPolygon; of kAngle the squared tangent.
   double limit() const { return limit_; }
 
  private:

@@ -189,8 +189,9 @@ class UniformRounds {
 
   void CutAll() {
     const std::size_t size = cutter_.size();
-    Round next;
+    Round& next = next_;
     next.numbers.resize(2 * round_.numbers.size());
+    next.pieces.clear();
     next.pieces.reserve(2 * round_.pieces.size());
     for (std::size_t i = 0; i < round_.pieces.size(); ++i) {
       const PieceInterval& piece = round_.pieces[i];
@@ -206,7 +207,7 @@ class UniformRounds {
       next.pieces.push_back(cutter_.second_interval());
     }
     next.numbers.resize(next.pieces.size() * size);
-    round_ = std::move(next);
+    std::swap(round_, next_);
   }
 
   const SubdivisionOptions& options_;
@@ -214,6 +215,7 @@ class UniformRounds {
   PieceCutter& cutter_;
   Subdivision& result_;
   Round round_;
+  Round next_;  // its room is used again: fresh pages took as long as the cuts
 };
 
 std::string Explanation(const Subdivision& result, const SubdivisionOptions& options,

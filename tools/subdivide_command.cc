@@ -13,7 +13,8 @@
 DEFINE_string(rule, "longest",
               "Where pieces are cut, with options, as in flatness/rounds=3 (batten list rules).");
 DEFINE_string(stop, batten::ToString(batten::SubdivisionOptions().stop),
-              "What must be small on a piece: control_points (largest distance from the chord), "
+              "What must be small on a piece: control_points (largest distance from the chord's "
+              "line), polygon (from its segment: bounds the true error), "
               "hull_area, flatness (sum of squared distances), segment (distance of the curve "
               "itself from the chord's segment), angle (of the control polygon with the chord).");
 DEFINE_double(relative_tolerance, batten::SubdivisionOptions().relative_tolerance,

@@ -178,6 +178,9 @@ TEST_P(EveryStop, EveryPieceOfTheResultPasses) {
           EXPECT_LE(std::sqrt(farthest.numerator / farthest.denominator),
                     tolerance * side * kSlack);
           break;
+        case StopMeasure::kPolygon:
+          EXPECT_LE(std::sqrt(SquaredPolygonDistance(6, 2, piece)), tolerance * side * kSlack);
+          break;
         case StopMeasure::kHullArea:
           EXPECT_LE(HullArea(6, piece), area * kSlack);
           break;
@@ -196,28 +199,32 @@ TEST_P(EveryStop, EveryPieceOfTheResultPasses) {
   }
 }
 
-TEST(BezierSubdivision, TheTrueErrorStaysBelowTheToleranceOfTheSegmentRule) {
+TEST(BezierSubdivision, TheTrueErrorStaysBelowTheToleranceOfTheSegmentRules) {
   std::mt19937 random(29);
   SubdivisionOptions options;
-  options.stop = StopMeasure::kSegment;
-  for (const int degree : {2, 5, 16}) {
-    const BezierCurve curve = CurveOf(RandomPoints(degree + 1, 2, &random));
-    const Subdivision result = Subdivided(curve, &CutAtHalf, options);
-    const double side = BoxSide(degree, 2, curve.control_points().data());
-    // Certified, including what the certificate adds for rounding.
-    EXPECT_LE(TrueError(curve, result).upper,
-              1e-5 * side + 2 * BezierRounding(degree, 2, curve.control_points().data()));
+  for (const StopMeasure stop : {StopMeasure::kSegment, StopMeasure::kPolygon}) {
+    options.stop = stop;
+    for (const int degree : {2, 5, 16}) {
+      const BezierCurve curve = CurveOf(RandomPoints(degree + 1, 2, &random));
+      const Subdivision result = Subdivided(curve, &CutAtHalf, options);
+      const double side = BoxSide(degree, 2, curve.control_points().data());
+      // Certified, including what the certificate adds for rounding.
+      EXPECT_LE(TrueError(curve, result).upper,
+                1e-5 * side + 2 * BezierRounding(degree, 2, curve.control_points().data()));
+    }
   }
 }
 
-TEST(BezierSubdivision, OnlyTheSegmentRuleSeesOvershootOnALine) {
+TEST(BezierSubdivision, OnlyTheSegmentRulesSeeOvershootOnALine) {
   const BezierCurve curve = CurveOf(PointsOf({{0, 0}, {4, 0}, {-3, 0}, {1, 0}}));
   SubdivisionOptions options;
   EXPECT_EQ(Subdivided(curve, &CutAtHalf, options).num_pieces(), 1);
-  options.stop = StopMeasure::kSegment;
-  const Subdivision result = Subdivided(curve, &CutAtHalf, options);
-  EXPECT_GT(result.num_pieces(), 2);
-  EXPECT_LE(TrueError(curve, result).upper, 1e-5 * 7.0 * (1.0 + 1e-6));
+  for (const StopMeasure stop : {StopMeasure::kSegment, StopMeasure::kPolygon}) {
+    options.stop = stop;
+    const Subdivision result = Subdivided(curve, &CutAtHalf, options);
+    EXPECT_GT(result.num_pieces(), 2);
+    EXPECT_LE(TrueError(curve, result).upper, 1e-5 * 7.0 * (1.0 + 1e-6));
+  }
 }
 
 TEST(BezierSubdivision, ScalingByAPowerOfTwoChangesNoParameter) {
