@@ -79,6 +79,12 @@ void PieceCutter::SetPlace(double u) {
   // Pieces are 2^-50 long at least, so that a quarter of one is no less than a rounding of 1.
   constexpr double kApart = 0x1p-52;
   const double length = end_ - begin_;
+  constexpr double kHalf = 0.5;
+  place_ = begin_ + kHalf * length;
+  if (u == kHalf && place_ - begin_ == end_ - place_) {  // no rounding: no need to divide
+    fraction_ = kHalf;
+    return;
+  }
   place_ = std::clamp(begin_ + u * length, begin_ + kApart, end_ - kApart);
   fraction_ = (place_ - begin_) / length;
 }

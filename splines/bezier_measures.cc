@@ -113,6 +113,30 @@ bool IsNearSegmentIn(int n, const double* points, double squared_limit) {
   return true;
 }
 
+// One division for all points: those beside the segment are compared by their cross products.
+template <int d>
+Quotient SquaredPolygonDistanceIn(int n, const double* points) {
+  const double* const last = points + n * d;
+  double chord[d], v[d];
+  Subtract<d>(last, points, chord);
+  const double squared_chord = Dot<d>(chord, chord);
+  double beside = 0.0, beyond = 0.0;
+  for (int i = 1; i < n; ++i) {
+    Subtract<d>(points + i * d, points, v);
+    const double along = Dot<d>(v, chord);
+    if (!(along > 0.0)) {
+      beyond = std::max(beyond, Dot<d>(v, v));
+    } else if (along >= squared_chord) {
+      Subtract<d>(points + i * d, last, v);
+      beyond = std::max(beyond, Dot<d>(v, v));
+    } else {
+      beside = std::max(beside, SquaredCross<d>(v, chord));
+    }
+  }
+  if (squared_chord == 0.0) return {beyond, 1.0};
+  return {std::max(beside, beyond * squared_chord), squared_chord};
+}
+
 template <int d>
 double SquaredLegSlopeIn(int n, const double* points) {
   double chord[d], leg[d];
@@ -174,14 +198,17 @@ bool IsNearSegment(int degree, int dimension, const double* points, double squar
   }
 }
 
-double SquaredPolygonDistance(int degree, int dimension, const double* points) {
-  const double* last = points + degree * dimension;
-  double farthest = 0.0;
-  for (int i = 1; i < degree; ++i) {
-    farthest =
-        std::max(farthest, SquaredSegmentDistance(dimension, points + i * dimension, points, last));
+Quotient SquaredPolygonDistance(int degree, int dimension, const double* points) {
+  switch (dimension) {
+    case 1:
+      return SquaredPolygonDistanceIn<1>(degree, points);
+    case 2:
+      return SquaredPolygonDistanceIn<2>(degree, points);
+    case 3:
+      return SquaredPolygonDistanceIn<3>(degree, points);
+    default:
+      return SquaredPolygonDistanceIn<4>(degree, points);
   }
-  return farthest;
 }
 
 Quotient Flatness(int degree, int dimension, const double* points) {

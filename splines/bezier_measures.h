@@ -22,7 +22,7 @@ Quotient SquaredChordDistance(int degree, int dimension, const double* points);
 bool IsNearChord(int degree, int dimension, const double* points, double squared_limit);
 /// The largest squared distance of a control point from the chord's segment: no point of the curve
 /// is farther.
-double SquaredPolygonDistance(int degree, int dimension, const double* points);
+Quotient SquaredPolygonDistance(int degree, int dimension, const double* points);
 /// The same compared with a squared limit, as IsNearChord().
 bool IsNearSegment(int degree, int dimension, const double* points, double squared_limit);
 /// Flatness: the sum of the squared distances of the inner control points from the chord's line.

@@ -12,7 +12,8 @@
 namespace batten {
 namespace {
 
-std::string Verdict(const Experiment& experiment, std::size_t claim, const ExperimentTables& tables) {
+std::string Verdict(const Experiment& experiment, std::size_t claim,
+                    const ExperimentTables& tables) {
   return ToString(experiment.claims.at(claim).judge(tables).verdict);
 }
 
@@ -223,10 +224,10 @@ TEST(BezierPaperCurves, GlyphsAreQuadraticsAndCubics) {
 }
 
 TEST(BezierPaperRuns, ComparedRulesStayBelowTheTolerance) {
-  CsvTable table({"family", "setting", "rule", "curves", "pieces_ratio", "pieces_low", "pieces_high",
-                  "seconds_ratio", "seconds_low", "seconds_high", "time_wins", "time_losses",
-                  "mean_pieces", "mean_rounds", "cuts_per_piece", "error_over_tolerance",
-                  "failing"});
+  CsvTable table({"family", "setting", "rule", "curves", "pieces_ratio", "pieces_low",
+                  "pieces_high", "seconds_ratio", "seconds_low", "seconds_high", "time_wins",
+                  "time_losses", "mean_pieces", "mean_rounds", "cuts_per_piece",
+                  "error_over_tolerance", "failing"});
   CompareRules({FamilyCurve("walk", 12, 0), FamilyCurve("wave", 12, 0)}, {"two"}, 1, 1, &table);
   EXPECT_EQ(table.num_rows(), 17);  // 5 rules in uniform rounds, 6 adaptive, by two stops
   for (std::size_t k = 0; k < table.num_rows(); ++k) {

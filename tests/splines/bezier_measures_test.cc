@@ -24,11 +24,13 @@ TEST(BezierMeasures, DistancesFromTheChordAreThoseOfTheInnerPoints) {
 TEST(BezierMeasures, BeyondTheChordsEndsThePolygonIsFartherThanFromItsLine) {
   // (9, -1) is 5 beside and 1 below the end (4, 0); (-2, 0) is 2 before the begin.
   const Points points = PointsOf({{0, 0}, {1, 3}, {9, -1}, {-2, 0}, {4, 0}});
-  EXPECT_EQ(SquaredPolygonDistance(4, 2, points.data()), 26.0);
+  EXPECT_EQ(Value(SquaredPolygonDistance(4, 2, points.data())), 26.0);
   EXPECT_TRUE(IsNearSegment(4, 2, points.data(), 26.0));
   EXPECT_FALSE(IsNearSegment(4, 2, points.data(), 25.9));
   const Points before = PointsOf({{0, 0}, {-2, 0}, {1, 0}, {4, 0}});
-  EXPECT_EQ(SquaredPolygonDistance(3, 2, before.data()), 4.0);
+  EXPECT_EQ(Value(SquaredPolygonDistance(3, 2, before.data())), 4.0);
+  const Points closed = PointsOf({{1, 1}, {4, 5}, {1, 1}});
+  EXPECT_EQ(Value(SquaredPolygonDistance(2, 2, closed.data())), 25.0);
   EXPECT_FALSE(IsNearSegment(3, 2, before.data(), 3.9));
   EXPECT_TRUE(IsNearChord(3, 2, before.data(), 0.0));
 }

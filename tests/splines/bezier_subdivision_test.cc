@@ -169,6 +169,7 @@ TEST_P(EveryStop, EveryPieceOfTheResultPasses) {
       const double* piece = result.pieces.data() + i * 7 * 2;
       const Quotient farthest = SquaredChordDistance(6, 2, piece);
       const Quotient flatness = Flatness(6, 2, piece);
+      const Quotient polygon = SquaredPolygonDistance(6, 2, piece);
       const double tolerance = options.relative_tolerance;
       const double area = tolerance * side * side;
       // The test of a piece and this one round a few times each.
@@ -179,7 +180,7 @@ TEST_P(EveryStop, EveryPieceOfTheResultPasses) {
                     tolerance * side * kSlack);
           break;
         case StopMeasure::kPolygon:
-          EXPECT_LE(std::sqrt(SquaredPolygonDistance(6, 2, piece)), tolerance * side * kSlack);
+          EXPECT_LE(std::sqrt(polygon.numerator / polygon.denominator), tolerance * side * kSlack);
           break;
         case StopMeasure::kHullArea:
           EXPECT_LE(HullArea(6, piece), area * kSlack);
