@@ -6,6 +6,7 @@
 
 #include "cost_functions/term.h"
 #include "problems/catalogue.h"
+#include "solvers/cut_rule_registry.h"
 #include "solvers/solver_registry.h"
 #include "tools/command.h"
 
@@ -86,6 +87,18 @@ Json TermsJson() {
   return list;
 }
 
+Json RulesJson() {
+  Json list = Json::array();
+  for (const std::string& name : CutRuleRegistry::Global().Names()) {
+    const CutRuleInfo& info = *CutRuleRegistry::Global().Find(name);
+    list.push_back({{"name", info.name},
+                    {"summary", info.summary},
+                    {"source", info.source},
+                    {"options", OptionsJson(info.options)}});
+  }
+  return list;
+}
+
 Json ProblemsJson(const std::vector<CatalogueEntry>& entries) {
   Json list = Json::array();
   for (const CatalogueEntry& entry : entries) {
@@ -146,6 +159,15 @@ std::string TermsText() {
   return text + "  every term:\n" + OptionsText(CommonTermOptions());
 }
 
+std::string RulesText() {
+  std::string text = "Cut rules of subdivide, with their options (NAME/OPTION=VALUE):\n";
+  for (const std::string& name : CutRuleRegistry::Global().Names()) {
+    const CutRuleInfo& info = *CutRuleRegistry::Global().Find(name);
+    text += Entry(name, info.summary) + OptionsText(info.options);
+  }
+  return text;
+}
+
 std::string ProblemsText(const std::vector<CatalogueEntry>& entries) {
   std::string text = "Problems:\n";
   size_t indent = kIndent;
@@ -162,10 +184,10 @@ std::string ProblemsText(const std::vector<CatalogueEntry>& entries) {
 }
 
 int RunList(const std::vector<std::string>& positional, CommandOutput* output) {
-  const std::vector<std::string> kinds = {"solvers", "terms", "problems"};
+  const std::vector<std::string> kinds = {"solvers", "terms", "rules", "problems"};
   if (positional.size() > 1) {
     return Refuse("list: found " + std::to_string(positional.size()) +
-                      " words; allowed: one of solvers, terms, problems",
+                      " words; allowed: one of solvers, terms, rules, problems",
                   output);
   }
   const std::string wanted = positional.empty() ? "" : positional.front();
@@ -186,6 +208,7 @@ int RunList(const std::vector<std::string>& positional, CommandOutput* output) {
     Json json = Json::object();
     if (shown("solvers")) json["solvers"] = SolversJson();
     if (shown("terms")) json["terms"] = TermsJson();
+    if (shown("rules")) json["rules"] = RulesJson();
     if (shown("problems")) json["problems"] = ProblemsJson(entries);
     output->results = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     return kDone;
@@ -193,6 +216,7 @@ int RunList(const std::vector<std::string>& positional, CommandOutput* output) {
   std::vector<std::string> parts;
   if (shown("solvers")) parts.push_back(SolversText());
   if (shown("terms")) parts.push_back(TermsText());
+  if (shown("rules")) parts.push_back(RulesText());
   if (shown("problems")) parts.push_back(ProblemsText(entries));
   for (const std::string& part : parts) {
     output->results += (output->results.empty() ? "" : "\n") + part;
@@ -205,8 +229,9 @@ int RunList(const std::vector<std::string>& positional, CommandOutput* output) {
 Command ListCommand() {
   Command command;
   command.name = "list";
-  command.arguments = "[solvers|terms|problems]";
-  command.summary = "lists solvers, terms and problems with their options, defaults and ranges";
+  command.arguments = "[solvers|terms|rules|problems]";
+  command.summary =
+      "lists solvers, terms, cut rules and problems with their options, defaults and ranges";
   command.examples = {"batten list solvers", "batten list --json"};
   command.flags = {SwitchFlag("json")};
   command.run = &RunList;

@@ -123,7 +123,7 @@ Command ReproduceCommand() {
       "CSV files and figures: .svg with the gnuplot script (.gp) and the data (.dat) behind it. "
       "Each verdict is computed from the CSV by the rule stated beside it. Runs that an experiment "
       "expects to fail are no failures.",
-      "Reproductions: accelerated-gim, anderson."};
+      "Reproductions: accelerated-gim, anderson, bezier-subdivision."};
   command.examples = {"batten reproduce accelerated-gim --out=out/accelerated-gim",
                       "batten reproduce accelerated-gim --only=figure_1 --repetitions=1"};
   FlagInfo repetitions = NumberFlag("repetitions", "N", 1.0, 1000.0);

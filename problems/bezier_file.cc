@@ -1,0 +1,129 @@
+#include "problems/bezier_file.h"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "problems/data_set.h"
+#include "problems/strict_json.h"
+#include "splines/bezier_measures.h"
+
+namespace batten {
+namespace {
+
+using Json = nlohmann::json;
+
+bool EndsWith(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+/// Rows of numbers of one length; false where it is anything else.
+bool PointsFromJson(const Json& rows, Points* points) {
+  if (!rows.is_array() || rows.empty() || !rows[0].is_array() || rows[0].empty() ||
+      rows[0].size() > kMaxDimension) {
+    return false;
+  }
+  points->resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
+  for (Eigen::Index j = 0; j < points->rows(); ++j) {
+    const Json& row = rows[static_cast<std::size_t>(j)];
+    if (!row.is_array() || static_cast<Eigen::Index>(row.size()) != points->cols()) return false;
+    for (Eigen::Index c = 0; c < points->cols(); ++c) {
+      const Json& number = row[static_cast<std::size_t>(c)];
+      if (!number.is_number()) return false;
+      (*points)(j, c) = number.get<double>();
+    }
+  }
+  return true;
+}
+
+bool OneCurve(const std::string& where, Points control_points, std::vector<BezierPath>* paths,
+              std::string* error) {
+  std::string reason;
+  std::optional<BezierCurve> curve = BezierCurve::Make(std::move(control_points), &reason);
+  if (!curve) {
+    *error = where + reason;
+    return false;
+  }
+  paths->push_back({{{std::move(*curve), 0.0, 1.0}}});
+  return true;
+}
+
+bool FromSpline(const std::string& path, const Json& json, std::vector<BezierPath>* paths,
+                std::string* error) {
+  StrictObject whole(path, "", &json, error), spline;
+  int degree = 0;
+  bool periodic = false;
+  std::vector<double> knots;
+  if (!whole.Object("spline", StrictObject::Presence::kRequired, &spline) ||
+      !spline.Integer("degree", StrictObject::Presence::kRequired, 1, kMaxDegree, &degree) ||
+      !spline.Flag("periodic", StrictObject::Presence::kRequired, &periodic) ||
+      !spline.Numbers("knots", StrictObject::Presence::kRequired, &knots)) {
+    return false;
+  }
+  Points points;
+  const Json& inner = json.at("spline");
+  if (!inner.contains("control_points") || !PointsFromJson(inner.at("control_points"), &points)) {
+    return spline.Refuse("control_points", "a list of points of 1 to 4 coordinates");
+  }
+  std::string reason;
+  std::optional<BsplineBasis> basis = BsplineBasis::Make(degree, periodic, knots, &reason);
+  if (!basis) return spline.Complain("knots", reason);
+  if (basis->num_control_points() != points.rows()) {
+    return spline.Refuse("control_points",
+                         std::to_string(basis->num_control_points()) + " points for these knots");
+  }
+  paths->push_back({BezierSpansOf(BsplineCurve(std::move(*basis), std::move(points)))});
+  return true;
+}
+
+bool FromJson(const std::string& path, std::vector<BezierPath>* paths, std::string* error) {
+  Json json;
+  if (!ReadJsonFile(path, &json, error)) return false;
+  if (!json.is_object() || !json.contains("control_points")) {
+    return FromSpline(path, json, paths, error);
+  }
+  Points points;
+  if (!PointsFromJson(json.at("control_points"), &points)) {
+    return StrictObject(path, "", &json, error)
+        .Refuse("control_points", "a list of points of 1 to 4 coordinates");
+  }
+  return OneCurve(path + ": /control_points: ", std::move(points), paths, error);
+}
+
+bool FromPoints(const std::string& path, std::vector<BezierPath>* paths, std::string* error) {
+  std::optional<DataSet> data = ReadDataSet(path, error);
+  if (!data) return false;
+  if (data->parameters || data->weights) {
+    *error = path + ": found the column " + (data->parameters ? "t" : "weight") +
+             "; allowed: coordinates of control points alone";
+    return false;
+  }
+  return OneCurve(path + ": ", std::move(data->points), paths, error);
+}
+
+}  // namespace
+
+bool ReadBezierFile(const std::string& path, std::vector<BezierPath>* paths, std::string* error) {
+  paths->clear();
+  if (EndsWith(path, ".json")) return FromJson(path, paths, error);
+  if (EndsWith(path, ".svg")) return ReadSvgPaths(path, paths, error);
+  return FromPoints(path, paths, error);
+}
+
+double BoxSideOf(const std::vector<BezierPath>& paths) {
+  Points extremes;  // rows: low, high
+  for (const BezierPath& path : paths) {
+    for (const BezierSpan& span : path.spans) {
+      const Points& points = span.curve.control_points();
+      if (extremes.size() == 0) extremes = points.topRows(1).replicate(2, 1);
+      extremes.row(0) = extremes.row(0).cwiseMin(points.colwise().minCoeff());
+      extremes.row(1) = extremes.row(1).cwiseMax(points.colwise().maxCoeff());
+    }
+  }
+  return extremes.size() == 0 ? 0.0 : (extremes.row(1) - extremes.row(0)).maxCoeff();
+}
+
+}  // namespace batten

@@ -1,0 +1,67 @@
+#ifndef BATTEN_SPLINES_BEZIER_CUTTER_H_
+#define BATTEN_SPLINES_BEZIER_CUTTER_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "splines/bezier_subdivision.h"
+
+namespace batten {
+
+/// A piece without its control points.
+struct PieceInterval {
+  double begin = 0.0;
+  double end = 1.0;
+  int depth = 0;
+  int chain = 0;  ///< Cuts since the curve's own control points.
+};
+
+/// Cuts pieces of one curve where a rule says; counts; allocates nothing. It holds references to
+/// what it is made of.
+class PieceCutter final : public CutTrial {
+ public:
+  PieceCutter(const BezierCurve& curve, const StopTest& test, const CutChoice& rule);
+
+  std::size_t size() const { return size_; }  ///< Numbers of a piece: (n + 1) d.
+  StopValue Try(double u) override;
+  /// Asks the rule where to cut the piece.
+  void Choose(const double* points, const PieceInterval& piece, bool passes);
+  /// The chosen cut; `second` may be the piece's own points.
+  void Cut(double* first, double* second);
+  /// The same, where each points to size() numbers of the caller's: exchanged with those of a
+  /// trial, which spares copying them.
+  void CutOrExchange(double** first, double** second);
+  /// The rule has tried what it chose, and the first part passes.
+  bool first_passes() const { return is_tried_ && tried_passes_; }
+  PieceInterval first_interval() const;
+  PieceInterval second_interval() const;
+  /// The piece that begins with the d coordinates `begin_point`, from the curve's own control
+  /// points.
+  void ComputeAfresh(const PieceInterval& piece, const double* begin_point, double* points);
+  bool Passes(const double* points);
+
+  std::int64_t cuts() const { return cuts_ + own_evaluations_; }
+  std::int64_t evaluations() const { return tests_ + own_evaluations_; }
+
+ private:
+  void SetPlace(double u);
+
+  const BezierCurve& curve_;
+  const CutChoice& rule_;
+  std::size_t size_;
+  std::int64_t cuts_ = 0;  // without the rule's own, as are
+  std::int64_t tests_ = 0;
+  int chain_ = 0;
+  double place_ = 0.0;     // the cut's parameter on the curve
+  double fraction_ = 0.0;  // and on the piece
+  double tried_ = 0.0;
+  bool tried_passes_ = false;
+  bool is_tried_ = false;
+  std::vector<double> trial_numbers_;
+  double* trial_first_;
+  double* trial_second_;
+};
+
+}  // namespace batten
+
+#endif  // BATTEN_SPLINES_BEZIER_CUTTER_H_
