@@ -7,10 +7,10 @@
 
 namespace batten {
 
-/// r_g = sqrt(w_g) C^(k)(u_g), k = kDerivative, at the p - k + 1 points of Gauss and Legendre's rule
-/// in every span of the domain, d residuals each. |C^(k)|^2 is a polynomial of degree 2 (p - k) in a
-/// span, so that the sum of their squares is the integral of |C^(k)(u)|^2 over the domain itself,
-/// times the factor of the units: L^(2k - 1), L the length of the domain, for the parameter
+/// r_g = sqrt(w_g) C^(k)(u_g), k = kDerivative, at the p - k + 1 points of Gauss and Legendre's
+/// rule in every span of the domain, d residuals each. |C^(k)|^2 is a polynomial of degree 2 (p -
+/// k) in a span, so that the sum of their squares is the integral of |C^(k)(u)|^2 over the domain
+/// itself, times the factor of the units: L^(2k - 1), L the length of the domain, for the parameter
 /// normalised to [0, 1] (`scale_free`), 1 for the parameter as it is (`source`).
 template <int kDerivative>
 struct FairingResidual {

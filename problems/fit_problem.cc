@@ -8,6 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "problems/curve_constraints.h"
+#include "problems/robust_start.h"
+
 namespace batten {
 
 const char* ToString(ParameterKind kind) {
@@ -213,8 +216,29 @@ bool CurveFit::CheckEnds(std::string* error) const {
   return false;
 }
 
-/// Variables behind the control points.
-bool CurveFit::AddParameters(Problem* problem, std::string* error) {
+bool CurveFit::CheckSpanWeights(std::string* error) const {
+  if (spec_.span_weights.empty()) return true;
+  const std::vector<double>& u = basis_->knots();
+  std::size_t num_spans = 0;
+  for (int span = basis_->first_span(); span <= basis_->last_span(); ++span) {
+    const auto k = static_cast<std::size_t>(span);
+    if (u[k] < u[k + 1]) ++num_spans;
+  }
+  if (spec_.span_weights.size() != num_spans) {
+    *error = "found " + std::to_string(spec_.span_weights.size()) +
+             " weights of spans; the curve has " + std::to_string(num_spans) +
+             " spans that are not empty";
+    return false;
+  }
+  for (const double weight : spec_.span_weights) {
+    if (weight >= 0.0 && std::isfinite(weight)) continue;
+    *error = "a weight of a span is " + NumberText(weight) + "; allowed: at least 0";
+    return false;
+  }
+  return true;
+}
+
+void CurveFit::AddParameters(Problem* problem, std::vector<LinearConstraint>* constraints) {
   setting_.parameter_offset = problem->num_variables();
   const auto last = parameters_.size() - 1;
   if (spec_.hold_ends) {
@@ -222,15 +246,14 @@ bool CurveFit::AddParameters(Problem* problem, std::string* error) {
     parameters_[last] = basis_->domain_end();
   }
   problem->AddVariables("parameters", parameters_);
-  if (!spec_.hold_ends) return true;
-  const auto held = [&](Eigen::Index i) {
+  if (!spec_.hold_ends) return;
+  for (const Eigen::Index i : {Eigen::Index(0), last}) {
     LinearConstraint constraint;
     constraint.name = "t_" + std::to_string(i) + " held";
     constraint.coefficients = {{setting_.parameter_offset + static_cast<int>(i), 1.0}};
     constraint.value = parameters_[i];
-    return constraint;
-  };
-  return problem->SetLinearConstraints({held(0), held(last)}, error);
+    constraints->push_back(std::move(constraint));
+  }
 }
 
 std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
@@ -242,7 +265,10 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   if (fit->spec_.terms.empty()) {
     fit->spec_.terms.push_back({is_free ? "free_parameter" : "interpolation", {}, nullptr});
   }
-  if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->Scale(error)) return nullptr;
+  if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->CheckSpanWeights(error) ||
+      !fit->Scale(error)) {
+    return nullptr;
+  }
   const Points start = fit->StartPoints();
   if (is_free) fit->StartParameters(start);
   fit->sites_.size = static_cast<int>(fit->parameters_.size());
@@ -252,11 +278,23 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   GroupBySpan(*fit->basis_, fit->sorted_, &fit->sites_);
   fit->setting_.basis = &*fit->basis_;
   fit->setting_.data = &fit->sites_;
+  if (!fit->spec_.span_weights.empty()) fit->setting_.span_weights = &fit->spec_.span_weights;
 
   auto problem =
       std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
   problem->AddVariables("control_points", fit->Variables(start));
-  if (is_free && !fit->AddParameters(problem.get(), error)) return nullptr;
+  std::vector<LinearConstraint> constraints;
+  if (is_free) fit->AddParameters(problem.get(), &constraints);
+  if (!AppendCurveConstraints(fit->spec_.constraints, *fit, &constraints, error) ||
+      !problem->SetLinearConstraints(constraints, error)) {
+    return nullptr;
+  }
+  if (AsksForRobustStart(fit->spec_.terms)) {
+    std::optional<Eigen::VectorXd> robust;
+    if (!StartRobustly(*problem, fit->setting_, &fit->spec_.terms, &robust, error)) return nullptr;
+    const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;
+    if (robust.has_value() && !is_asked_for) problem->SetStart(*robust);
+  }
   double largest_weight = 0.0;
   std::set<std::pair<const Term*, std::map<std::string, std::string>>> meanings;
   for (const NameSpec& name : fit->spec_.terms) {

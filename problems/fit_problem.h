@@ -51,6 +51,9 @@ struct FitSpec {
   /// Free parameters of an open curve: those of the first and last data point stay at the ends of
   /// the domain.
   bool hold_ends = false;
+  std::vector<NameSpec> constraints;  // hard ones, of problems/curve_constraints.h
+  /// Factors of fairing terms, one per non-empty span, finite and >= 0; empty: all 1.
+  std::vector<double> span_weights;
 };
 
 /// The curve-fit side of a problem: data, spline space, parameters, and the map between the scaled
@@ -89,7 +92,9 @@ class CurveFit {
   bool PlaceParameters(std::string* error);
   bool Scale(std::string* error);
   bool CheckEnds(std::string* error) const;
-  bool AddParameters(Problem* problem, std::string* error);
+  bool CheckSpanWeights(std::string* error) const;
+  /// Variables behind the control points, and the constraints that hold the ends.
+  void AddParameters(Problem* problem, std::vector<LinearConstraint>* constraints);
   bool CheckStart(std::string* error) const;
   Points StartPoints() const;
   Points StartOnPolyline() const;

@@ -44,8 +44,8 @@ double FoldGraded(int any_width, int any_dimension, PackedRows rows, double* tri
     reflection.Apply(squared_norm, r);
     for (int k = j + 1; k < columns; ++k) {
       RowPack* const column = rows.columns + k * rows.stride;
-      const RowPack factor = Broadcast(
-          reflection.Apply(DotPacks(pivot, column, rows.packs), entry_of_triangle(k)));
+      const RowPack factor =
+          Broadcast(reflection.Apply(DotPacks(pivot, column, rows.packs), entry_of_triangle(k)));
       for (int i = 0; i < rows.packs; ++i) column[i] -= factor * pivot[i];
     }
   }

@@ -98,8 +98,8 @@ TEST(FairingEnds, HeavyFairingLeadsToTheNearestPolynomialAndOfClosedCurvesToAPoi
     for (const int k : {1, 2, 3}) {
       for (const auto& [m, n] : {std::pair(50, 20), std::pair(200, 200)}) {
         for (const double weight : {1e4, 1e8, 1e12, 1e16}) {
-          SCOPED_TRACE((closed ? "closed k = " : "open k = ") + std::to_string(k) + " n = " +
-                       std::to_string(n) + " weight " + NumberText(weight));
+          SCOPED_TRACE((closed ? "closed k = " : "open k = ") + std::to_string(k) +
+                       " n = " + std::to_string(n) + " weight " + NumberText(weight));
           const auto problem = MakeSmoothing(closed, m, n, k, weight);
           const SolverTrial trial(*problem, "banded_qr");
           EXPECT_EQ(trial.outcome.reason, StopReason::kSolved);
@@ -120,8 +120,7 @@ TEST(FairingEnds, HeavyFairingLeadsToTheNearestPolynomialAndOfClosedCurvesToAPoi
 TEST(FairingEnds, LightFairingLeadsToTheCurveWithoutIt) {
   for (const bool closed : {false, true}) {
     for (const int n : {40, 50}) {
-      const auto plain =
-          MakeFit(MakeOpenData(50), MakeSpec(3, closed, n));
+      const auto plain = MakeFit(MakeOpenData(50), MakeSpec(3, closed, n));
       const SolverTrial without(*plain, "banded_qr");
       const DenseFit dense(*plain);
       for (const double weight : {1e-16, 1e-12, 1e-8}) {
@@ -142,8 +141,8 @@ TEST(FairingEnds, LightFairingLeadsToTheCurveWithoutIt) {
 
 TEST(FairingEnds, NormalEquationsSayWhereTheyLoseTheLineThatQrKeeps) {
   const auto problem = MakeSmoothing(false, 200, 200, 2, 1e16);
-  const FairEnd end = MakeFairEnd(
-      DenseTerms(*problem), PolynomialControlPoints(problem->curve_fit()->basis(), 2), 1e16);
+  const FairEnd end = MakeFairEnd(DenseTerms(*problem),
+                                  PolynomialControlPoints(problem->curve_fit()->basis(), 2), 1e16);
   const SolverTrial trial(*problem, "banded_cholesky");
   EXPECT_THAT(trial.outcome.message,
               ::testing::HasSubstr("singular to working precision; solved by banded QR"));
