@@ -8,6 +8,7 @@
 #include "experiments/anderson_paper.h"
 #include "experiments/atomic_file.h"
 #include "experiments/build_info.h"
+#include "experiments/fairing_paper.h"
 #include "experiments/reproduction_page.h"
 #include "experiments/run.h"
 #include "problems/input_file.h"
@@ -121,7 +122,7 @@ const char* ToString(ClaimVerdict verdict) {
 
 const std::vector<Reproduction>& Reproductions() {
   static const auto& reproductions =
-      *new std::vector<Reproduction>{AcceleratedGim(), AndersonPaper()};
+      *new std::vector<Reproduction>{AcceleratedGim(), AndersonPaper(), FairingPaper()};
   return reproductions;
 }
 
