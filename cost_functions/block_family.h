@@ -69,7 +69,9 @@ class BlockFamily {
 
   /// The rows sqrt(weight) * (A, Q), if every residual is affine in the control points, alike for
   /// all coordinates, and there is no loss; read from the functor's derivative. Null otherwise.
-  virtual const RowSource* rows() const { return nullptr; }
+  const RowSource* rows() const { return loss_ == nullptr ? rows_without_loss() : nullptr; }
+  /// The same of the plain residuals where there is a loss: block b is row b of each coordinate.
+  virtual const RowSource* rows_without_loss() const { return nullptr; }
 
   /// The points behind the blocks, if E is sum_i w_i |C(t_i) - Q_i|^2 with t_i a variable and there
   /// is no loss. Null otherwise.

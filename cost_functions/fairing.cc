@@ -106,9 +106,12 @@ std::shared_ptr<const Sites> FairingResidual<kDerivative>::MakeSites(
     const double length = basis.knots()[static_cast<std::size_t>(span) + 1] - begin;
     if (!(length > 0.0)) continue;
     const auto first = static_cast<int>(quadrature->parameters.size());
+    const double of_span = setting.span_weights == nullptr
+                               ? factor
+                               : factor * (*setting.span_weights)[sites->groups.size()];
     for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
       quadrature->parameters.push_back(begin + 0.5 * (1.0 + rule.nodes[g]) * length);
-      quadrature->weights.push_back(0.5 * rule.weights[g] * length * factor);
+      quadrature->weights.push_back(0.5 * rule.weights[g] * length * of_span);
     }
     sites->groups.push_back({span, first, static_cast<int>(quadrature->parameters.size())});
   }

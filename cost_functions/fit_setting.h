@@ -20,6 +20,8 @@ struct Sites {
   const double* parameters = nullptr;  // in the basis' domain
   const double* points = nullptr;      // size x dimension in user units, or null
   const double* weights = nullptr;     // >= 0, or null: all 1
+  /// Points are derivatives or differences, which moving the origin does not change.
+  bool points_are_displacements = false;
   std::vector<int> order;
   std::vector<Group> groups;
   std::shared_ptr<const void> storage;  // what the pointers point into, if it is not the caller's
@@ -45,6 +47,8 @@ struct FitSetting {
   bool keep_order = false;       // free parameters stay in the order of the data points
   bool ends_held = false;        // those of the first and last point at the ends of the domain
   const Sites* data = nullptr;   // the data points at their fixed parameters, or at their start
+  /// Factors of fairing terms, one per non-empty span of the domain in their order; null: all 1.
+  const std::vector<double>* span_weights = nullptr;
   /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).
   bool use_static_sizes = true;
 };

@@ -56,9 +56,7 @@ class FunctorFamily final : public BlockFamily, private RowSource {
     }
   }
 
-  const RowSource* rows() const override {
-    return rows_are_alike_ && loss() == nullptr ? this : nullptr;
-  }
+  const RowSource* rows_without_loss() const override { return rows_are_alike_ ? this : nullptr; }
 
   std::unique_ptr<ceres::CostFunction> MakeCeresCostFunction(const Eigen::VectorXd& /*x*/,
                                                              int block) const override {

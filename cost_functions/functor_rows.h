@@ -132,9 +132,9 @@ class FunctorRows {
     for (int c = 0; c < dimension(); ++c) {
       Pack point(0.0);
       if (sites_.points != nullptr) {
-        point =
-            (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - setting_.center[c]) *
-            setting_.scale;
+        const double center = sites_.points_are_displacements ? 0.0 : setting_.center[c];
+        point = (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - center) *
+                setting_.scale;
       }
       site.mutable_point()[0] = point;
       functor_(site, points, &result);

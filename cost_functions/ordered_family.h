@@ -12,11 +12,11 @@
 namespace batten {
 
 /// A family with free parameters whose order is kept: its parameters are the ordered ones nearest
-/// to the variables, E(P, t(s)). Points that would pass each other thus share one t. Its gradient is
-/// less the steepest descent from s = t, where E(P, t(s)) has a kink: 0 at minima over ordered t
+/// to the variables, E(P, t(s)). Points that would pass each other thus share one t. Its gradient
+/// is less the steepest descent from s = t, where E(P, t(s)) has a kink: 0 at minima over ordered t
 /// only. Elsewhere (s where t(s) pools points) no step is felt that does not move their mean: Seat
-/// puts s there. Jacobian and Hessian are those of points that stay together. Ends that are held are those of the domain, where others
-/// stop anyway.
+/// puts s there. Jacobian and Hessian are those of points that stay together. Ends that are held
+/// are those of the domain, where others stop anyway.
 class OrderedFamily final : public BlockFamily {
  public:
   OrderedFamily(const FitSetting& setting, std::unique_ptr<BlockFamily> inner,

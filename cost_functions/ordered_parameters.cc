@@ -17,10 +17,10 @@ OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s,
     while (!blocks.empty() && !(blocks.back().mean < block.mean)) {
       const Block& before = blocks.back();
       // Equal points stay where they are, to the last bit.
-      const double mean = before.mean == block.mean
-                              ? block.mean
-                              : (before.mean * before.size + block.mean * block.size) /
-                                    (before.size + block.size);
+      const double mean =
+          before.mean == block.mean
+              ? block.mean
+              : (before.mean * before.size + block.mean * block.size) / (before.size + block.size);
       block = {before.begin, before.size + block.size, mean};
       blocks.pop_back();
     }

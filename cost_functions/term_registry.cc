@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cost_functions/end_condition.h"
 #include "cost_functions/fairing.h"
 #include "cost_functions/foot_point.h"
 #include "cost_functions/free_parameter.h"
@@ -13,10 +14,8 @@ namespace {
 
 // The built-in terms: one line each.
 constexpr std::unique_ptr<Term> (*kBuiltInTerms[])() = {
-    &MakeInterpolationTerm,
-    &MakeFreeParameterTerm,
-    &MakeFootPointTerm,
-    &MakeFairingTerm,
+    &MakeInterpolationTerm, &MakeFreeParameterTerm, &MakeFootPointTerm,    &MakeFairingTerm,
+    &MakeEndPointTerm,      &MakeEndTangentTerm,    &MakeEndCurvatureTerm,
 };
 
 }  // namespace
@@ -27,7 +26,8 @@ std::vector<OptionInfo> CommonTermOptions() {
                            "robust loss applied to each block's squared residual"),
           OptionInfo::Real("loss_scale", 1.0, 1e-6, 1e6,
                            "residual size at which the loss departs from the square, in units of "
-                           "the longest side of the data's box")};
+                           "the longest side of the data's box; mad: estimated from the residuals "
+                           "of Huber's fit before the run")};
 }
 
 TermRegistry& TermRegistry::Global() {
@@ -76,7 +76,12 @@ bool TermRegistry::Resolve(const NameSpec& spec, const Term** term, OptionValues
   }
   std::vector<OptionInfo> infos = (*term)->Info().options;
   for (OptionInfo& info : CommonTermOptions()) infos.push_back(std::move(info));
-  return ResolveOptions(infos, spec, options, error);
+  // A scale to be estimated, which problems do, is no number yet.
+  NameSpec known = spec;
+  known.options.erase(std::remove(known.options.begin(), known.options.end(),
+                                  std::pair<std::string, std::string>("loss_scale", "mad")),
+                      known.options.end());
+  return ResolveOptions(infos, known, options, error);
 }
 
 }  // namespace batten

@@ -67,6 +67,18 @@ Json ShapeJson(const FitReport& report) {
           {"longest_free_arc", shape.longest_free_arc}};
 }
 
+Json FairnessJson(const FitReport& report) {
+  if (!report.fairness.has_value()) return nullptr;
+  const CurveFairness& fairness = *report.fairness;
+  const bool plane = fairness.num_inflections >= 0;
+  return {{"bending_energy", fairness.bending_energy},
+          {"curvature_variation", fairness.curvature_variation},
+          {"max_curvature", fairness.max_curvature},
+          {"max_curvature_at", fairness.max_curvature_at},
+          {"num_curvature_extrema", fairness.num_curvature_extrema},
+          {"num_inflections", plane ? Json(fairness.num_inflections) : Json(nullptr)}};
+}
+
 /// Everything of fit.json but the spline and the parameters, which may be long.
 Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
             const FitReport& report) {
@@ -82,6 +94,7 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
                       {"rms_orthogonal", report.rms_orthogonal},
                       {"max_orthogonal", report.max_orthogonal}};
   json["shape"] = ShapeJson(report);
+  json["fairness"] = FairnessJson(report);
   json["solver"] = run.solver.ToString();
   json["options"] = run.options;
   json["mode"] = ToString(spec.mode);

@@ -163,6 +163,7 @@ FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec
   MeasureDistances(*fit, curve, feet, &report);
   MeasureFootPoints(*fit, curve, report.audited ? weight : 1.0, &feet, &report);
   report.shape = ShapeBesideData(*fit, curve, feet);
+  if (curve.dimension() >= 2) report.fairness = MeasureFairness(curve);
   if (report.audited) {
     report.audit = Audit(PlainNumbers(problem, run.x, weight));
     report.verdict = Verify(ClaimOf(run, spec), report.audit);

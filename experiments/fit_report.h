@@ -6,6 +6,7 @@
 #include <string>
 
 #include "experiments/audit.h"
+#include "experiments/curve_fairness.h"
 #include "experiments/curve_shape.h"
 #include "experiments/run.h"
 #include "problems/fit_problem.h"
@@ -18,8 +19,9 @@ struct FitReport {
   double max = 0.0;
   double rms_orthogonal = 0.0;  // at plain closest points (splines/closest_point.h)
   double max_orthogonal = 0.0;
-  double energy_at_foot_points = 0.0;  // sum of w |C(foot) - Q|^2
-  std::optional<CurveShape> shape;     // none in dimension 1, or without a curve
+  double energy_at_foot_points = 0.0;     // sum of w |C(foot) - Q|^2
+  std::optional<CurveShape> shape;        // none in dimension 1, or without a curve
+  std::optional<CurveFairness> fairness;  // the same
   /// False where the audit does not apply: it knows the terms interpolation and free_parameter
   /// without loss, on unconstrained control points. `audit` and `verdict` then say nothing.
   bool audited = false;

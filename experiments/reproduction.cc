@@ -9,6 +9,7 @@
 #include "experiments/atomic_file.h"
 #include "experiments/bezier_paper.h"
 #include "experiments/build_info.h"
+#include "experiments/fairing_paper.h"
 #include "experiments/reproduction_page.h"
 #include "experiments/run.h"
 #include "problems/input_file.h"
@@ -121,8 +122,8 @@ const char* ToString(ClaimVerdict verdict) {
 }
 
 const std::vector<Reproduction>& Reproductions() {
-  static const auto& reproductions =
-      *new std::vector<Reproduction>{AcceleratedGim(), AndersonPaper(), BezierPaper()};
+  static const auto& reproductions = *new std::vector<Reproduction>{
+      AcceleratedGim(), AndersonPaper(), BezierPaper(), FairingPaper()};
   return reproductions;
 }
 

@@ -5,11 +5,19 @@
 namespace batten {
 
 std::unique_ptr<CurveView> CurveView::Make(const Problem& problem, EvaluationMonitor* monitor) {
-  if (problem.terms().empty()) return nullptr;
   std::vector<const RowSource*> sources;
-  RowShape shape;
   for (const Problem::TermInstance& term : problem.terms()) {
-    const RowSource* source = term.family->rows();
+    sources.push_back(term.family->rows());
+  }
+  return Make(problem, std::move(sources), monitor);
+}
+
+std::unique_ptr<CurveView> CurveView::Make(const Problem& problem,
+                                           std::vector<const RowSource*> sources,
+                                           EvaluationMonitor* monitor) {
+  if (sources.empty()) return nullptr;
+  RowShape shape;
+  for (const RowSource* source : sources) {
     if (source == nullptr) return nullptr;
     const RowShape part = source->shape();
     const int num_rows = shape.num_rows + part.num_rows;
@@ -17,7 +25,6 @@ std::unique_ptr<CurveView> CurveView::Make(const Problem& problem, EvaluationMon
     shape = part;
     shape.num_rows = num_rows;
     shape.width = width;
-    sources.push_back(source);
   }
   if (shape.num_columns * shape.dimension != problem.num_variables()) return nullptr;
   if (problem.elimination().trivial()) {
@@ -48,7 +55,14 @@ const BandedRows& CurveView::rows() const {
 
 const NormalBand& CurveView::normal_band() const {
   if (band_ == nullptr) {
-    band_ = std::make_unique<NormalBand>(NormalBand::FromRows(row_source()));
+    if (rows_ != nullptr || sources_.size() == 1) {
+      band_ = std::make_unique<NormalBand>(NormalBand::FromRows(row_source()));
+    } else {
+      // Term by term: their rows need not be brought into one order for that.
+      auto band = std::make_unique<NormalBand>(shape_);
+      for (const RowSource* source : sources_) source->Stream(band.get());
+      band_ = std::move(band);
+    }
   }
   return *band_;
 }

@@ -18,6 +18,11 @@ class CurveView {
  public:
   /// Null if some term has no rows, or constraints treat coordinates differently.
   static std::unique_ptr<CurveView> Make(const Problem& problem, EvaluationMonitor* monitor);
+  /// The same of other rows in the problem's control points, such as its terms' with weights that a
+  /// loss gives; they must outlive the view. Null too if one of them is null.
+  static std::unique_ptr<CurveView> Make(const Problem& problem,
+                                         std::vector<const RowSource*> sources,
+                                         EvaluationMonitor* monitor);
 
   int num_points() const { return shape_.num_columns; }  // n
   int dimension() const { return shape_.dimension; }

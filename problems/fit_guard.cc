@@ -14,8 +14,8 @@ struct Guard {
   const char* help;
 };
 
-// Found on the outlines of animals with 12 and 20 control points: a tenth of these leaves loops, ten
-// times as much is seen in the distances.
+// Found on the outlines of animals with 12 and 20 control points: a tenth of these leaves loops,
+// ten times as much is seen in the distances.
 constexpr Guard kGuards[] = {
     {"length", 1, 1e-5, "per data point, of the integral of |C'|^2"},
     {"bending", 2, 1e-8, "per data point, of the integral of |C''|^2"},

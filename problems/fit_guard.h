@@ -11,8 +11,8 @@ namespace batten {
 /// Adds what keeps a curve with free parameters from running where no point is nearest to it, which
 /// costs nothing otherwise: `length` bounds the length of stretches without data by a small part of
 /// the integral of |C'|^2, `bending` how they turn by one of |C''|^2 (option weight: per data
-/// point). A guard is a fairing term of the problem, so that every solver honours it. False with one
-/// sentence in `error` for a guard that is not known.
+/// point). A guard is a fairing term of the problem, so that every solver honours it. False with
+/// one sentence in `error` for a guard that is not known.
 bool ApplyGuard(const NameSpec& guard, int num_points, std::vector<NameSpec>* terms,
                 std::string* error);
 

@@ -96,8 +96,7 @@ Eigen::VectorXd CurveFit::InOrder(Eigen::VectorXd t) const {
   return OrderedIfKept(t);
 }
 
-/// Variables behind the control points.
-bool CurveFit::AddParameters(Problem* problem, std::string* error) {
+void CurveFit::AddParameters(Problem* problem, std::vector<LinearConstraint>* constraints) {
   setting_.parameter_offset = problem->num_variables();
   setting_.keep_order = spec_.keep_order;
   setting_.ends_held = spec_.hold_ends;
@@ -108,15 +107,14 @@ bool CurveFit::AddParameters(Problem* problem, std::string* error) {
   }
   if (spec_.keep_order) parameters_ = InOrder(parameters_);
   problem->AddVariables("parameters", parameters_);
-  if (!spec_.hold_ends) return true;
-  const auto held = [&](Eigen::Index i) {
+  if (!spec_.hold_ends) return;
+  for (const Eigen::Index i : {Eigen::Index(0), last}) {
     LinearConstraint constraint;
     constraint.name = "t_" + std::to_string(i) + " held";
     constraint.coefficients = {{setting_.parameter_offset + static_cast<int>(i), 1.0}};
     constraint.value = parameters_[i];
-    return constraint;
-  };
-  return problem->SetLinearConstraints({held(0), held(last)}, error);
+    constraints->push_back(std::move(constraint));
+  }
 }
 
 }  // namespace batten

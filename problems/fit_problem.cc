@@ -8,7 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "problems/curve_constraints.h"
 #include "problems/fit_guard.h"
+#include "problems/robust_start.h"
 
 namespace batten {
 
@@ -190,6 +192,28 @@ bool CurveFit::Scale(std::string* error) {
   return true;
 }
 
+bool CurveFit::CheckSpanWeights(std::string* error) const {
+  if (spec_.span_weights.empty()) return true;
+  const std::vector<double>& u = basis_->knots();
+  std::size_t num_spans = 0;
+  for (int span = basis_->first_span(); span <= basis_->last_span(); ++span) {
+    const auto k = static_cast<std::size_t>(span);
+    if (u[k] < u[k + 1]) ++num_spans;
+  }
+  if (spec_.span_weights.size() != num_spans) {
+    *error = "found " + std::to_string(spec_.span_weights.size()) +
+             " weights of spans; the curve has " + std::to_string(num_spans) +
+             " spans that are not empty";
+    return false;
+  }
+  for (const double weight : spec_.span_weights) {
+    if (weight >= 0.0 && std::isfinite(weight)) continue;
+    *error = "a weight of a span is " + NumberText(weight) + "; allowed: at least 0";
+    return false;
+  }
+  return true;
+}
+
 std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
   std::unique_ptr<CurveFit> fit(new CurveFit(std::move(data), std::move(spec)));
   if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error) || !fit->PlaceParameters(error)) {
@@ -207,7 +231,10 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     if (!ApplyGuard(*fit->spec_.guard, m, &fit->spec_.terms, error)) return nullptr;
     fit->spec_.guard.reset();
   }
-  if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->Scale(error)) return nullptr;
+  if (!fit->CheckStart(error) || !fit->CheckEnds(error) || !fit->CheckSpanWeights(error) ||
+      !fit->Scale(error)) {
+    return nullptr;
+  }
   const Points start = fit->StartPoints();
   if (is_free) fit->StartParameters(start);
   fit->sites_.size = static_cast<int>(fit->parameters_.size());
@@ -217,11 +244,23 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   GroupBySpan(*fit->basis_, fit->sorted_, &fit->sites_);
   fit->setting_.basis = &*fit->basis_;
   fit->setting_.data = &fit->sites_;
+  if (!fit->spec_.span_weights.empty()) fit->setting_.span_weights = &fit->spec_.span_weights;
 
   auto problem =
       std::make_unique<Problem>(fit->spec_.name.empty() ? fit->data_.name : fit->spec_.name);
   problem->AddVariables("control_points", fit->Variables(start));
-  if (is_free && !fit->AddParameters(problem.get(), error)) return nullptr;
+  std::vector<LinearConstraint> constraints;
+  if (is_free) fit->AddParameters(problem.get(), &constraints);
+  if (!AppendCurveConstraints(fit->spec_.constraints, *fit, &constraints, error) ||
+      !problem->SetLinearConstraints(constraints, error)) {
+    return nullptr;
+  }
+  if (AsksForRobustStart(fit->spec_.terms)) {
+    std::optional<Eigen::VectorXd> robust;
+    if (!StartRobustly(*problem, fit->setting_, &fit->spec_.terms, &robust, error)) return nullptr;
+    const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;
+    if (robust.has_value() && !is_asked_for) problem->SetStart(*robust);
+  }
   double largest_weight = 0.0;
   std::set<std::pair<const Term*, std::map<std::string, std::string>>> meanings;
   for (const NameSpec& name : fit->spec_.terms) {

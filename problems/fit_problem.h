@@ -58,6 +58,9 @@ struct FitSpec {
   /// Against loops: a name and options as in fit_guard.h. A problem made of it has the term
   /// instead.
   std::optional<NameSpec> guard;
+  std::vector<NameSpec> constraints;  // hard ones, of problems/curve_constraints.h
+  /// Factors of fairing terms, one per non-empty span, finite and >= 0; empty: all 1.
+  std::vector<double> span_weights;
 };
 
 /// The curve-fit side of a problem: data, spline space, parameters, and the map between the scaled
@@ -100,7 +103,9 @@ class CurveFit {
   bool Scale(std::string* error);
   bool CheckEnds(std::string* error) const;
   bool CheckKind(const NameSpec& name, const Term& term, std::string* error) const;
-  bool AddParameters(Problem* problem, std::string* error);
+  bool CheckSpanWeights(std::string* error) const;
+  /// Variables behind the control points, and the constraints that hold the ends.
+  void AddParameters(Problem* problem, std::vector<LinearConstraint>* constraints);
   bool CheckStart(std::string* error) const;
   Eigen::VectorXd InOrder(Eigen::VectorXd t) const;
   Eigen::VectorXd FeetOf(const Eigen::VectorXd& x) const;

@@ -18,6 +18,11 @@ void Problem::AddVariables(const std::string& range_name, const Eigen::VectorXd&
   start_.tail(start.size()) = start;
 }
 
+void Problem::SetStart(const Eigen::VectorXd& start) {
+  CHECK_EQ(start.size(), start_.size());
+  start_ = start;
+}
+
 void Problem::AddTerm(std::string term_name, std::unique_ptr<BlockFamily> family) {
   terms_.push_back({std::move(term_name), std::move(family)});
 }

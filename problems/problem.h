@@ -58,6 +58,8 @@ class Problem {
   const CurveFit* curve_fit() const { return curve_fit_.get(); }
 
   void AddVariables(const std::string& range_name, const Eigen::VectorXd& start);
+  /// Instead of the start of all variables.
+  void SetStart(const Eigen::VectorXd& start);
   void AddTerm(std::string term_name, std::unique_ptr<BlockFamily> family);
   /// Both of size num_variables().
   void SetBounds(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);

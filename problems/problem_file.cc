@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/catalogue.h"
+#include "problems/curve_constraints.h"
 #include "problems/data_folders.h"
 #include "problems/fit_guard.h"
 #include "problems/strict_json.h"
@@ -106,6 +107,20 @@ bool ReadTerms(const StrictObject& file, FitSpec* spec) {
   return true;
 }
 
+bool ReadConstraints(const StrictObject& file, FitSpec* spec) {
+  std::vector<std::string> texts;
+  if (!file.Texts("constraints", kOptional, &texts)) return false;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    NameSpec constraint;
+    std::string why;
+    if (!ParseNameSpec(texts[i], &constraint, &why) || !CheckConstraint(constraint, &why)) {
+      return file.Complain("constraints/" + std::to_string(i), why);
+    }
+    spec->constraints.push_back(std::move(constraint));
+  }
+  return true;
+}
+
 bool ReadName(const StrictObject& file, std::string* name) {
   constexpr char kCharacters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   if (!file.Text("name", kRequired, name)) return false;
@@ -174,11 +189,11 @@ bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string
   read.path = path;
   FitSpec* spec = &read.spec;
   if (!file.HasOnly({"name", "summary", "data", "spline", "parameters", "terms", "start",
-                     "parameter_kind", "hold_ends", "keep_order", "guard", "reference",
-                     "citation"}) ||
+                     "parameter_kind", "hold_ends", "keep_order", "guard", "constraints",
+                     "reference", "citation"}) ||
       !ReadName(file, &read.name) || !file.Text("summary", kOptional, &read.summary) ||
       !ReadData(file, &read) || !ReadParameters(file, spec) || !ReadSpline(file, spec) ||
-      !ReadTerms(file, spec) ||
+      !ReadTerms(file, spec) || !ReadConstraints(file, spec) ||
       !file.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) ||
       !ReadKind(file, spec) || !ReadGuard(file, spec) || !ReadReference(file, &read) ||
       !file.Text("citation", kOptional, &read.citation)) {

@@ -19,15 +19,8 @@ SolverInfo BandedCholeskySolver::ClassInfo() {
   return info;
 }
 
-std::string BandedCholeskySolver::WhyUnsupported(const Objective& objective) const {
-  return WhyNoUnboundedCurveView(objective, "banded_cholesky");
-}
-
-Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* context,
-                                         Eigen::VectorXd* x) {
-  const Status status = context->Iterate(*x);
-  if (status != Status::kOk) return {context->stop_reason(), ""};
-  const CurveView& view = *objective->curve_view();
+Outcome BandedCholeskySolver::SolveRows(const CurveView& view, const Problem& /*problem*/,
+                                        RunContext* context, Eigen::VectorXd* x) const {
   const NormalBand& band = view.normal_band();
   // Forward error of normal equations: at most about the condition number of N times eps (Higham,
   // Accuracy and Stability, sec. 20.4). 1e-8 of the data's size is what the solvers are to agree
@@ -70,7 +63,6 @@ Outcome BandedCholeskySolver::DoMinimize(Objective* objective, RunContext* conte
   if (!x->allFinite()) {
     return {StopReason::kNumericalFailure, "the factorization has no finite answer"};
   }
-  context->Iterate(*x);
   return {StopReason::kSolved, message};
 }
 

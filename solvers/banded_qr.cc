@@ -44,14 +44,8 @@ SolverInfo BandedQrSolver::ClassInfo() {
   return info;
 }
 
-std::string BandedQrSolver::WhyUnsupported(const Objective& objective) const {
-  return WhyNoUnboundedCurveView(objective, "banded_qr");
-}
-
-Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
-  const Status status = context->Iterate(*x);
-  if (status != Status::kOk) return {context->stop_reason(), ""};
-  const CurveView& view = *objective->curve_view();
+Outcome BandedQrSolver::SolveRows(const CurveView& view, const Problem& problem,
+                                  RunContext* context, Eigen::VectorXd* x) const {
   const Points start = Eigen::Map<const Points>(x->data(), view.num_points(), view.dimension());
   const NearestSolution solution = SolveNearest(view.row_source(), start);
   if (!solution.found) {
@@ -59,11 +53,10 @@ Outcome BandedQrSolver::DoMinimize(Objective* objective, RunContext* context, Ei
   }
   *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
   context->Note("smallest over largest diagonal entry of R", NumberText(solution.diagonal_ratio));
-  context->Iterate(*x);
   const std::string far_off = DigitsWarning(solution.control_points);
   if (solution.unique) return {StopReason::kSolved, far_off};
   context->OffTheClock([&] {
-    const std::string shortage = ShortageText(objective->problem());
+    const std::string shortage = ShortageText(problem);
     if (!shortage.empty()) context->Note("Schoenberg-Whitney conditions", shortage);
   });
   return {StopReason::kSolved, "the minimum is not unique: rank " + std::to_string(solution.rank) +

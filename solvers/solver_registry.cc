@@ -9,11 +9,13 @@
 #include "solvers/ceres_lm.h"
 #include "solvers/cg.h"
 #include "solvers/chebyshev_lspia.h"
+#include "solvers/dense_qr.h"
 #include "solvers/extended_pia.h"
 #include "solvers/foot_iteration.h"
 #include "solvers/foot_newton.h"
 #include "solvers/gauss_seidel_pia.h"
 #include "solvers/gim.h"
+#include "solvers/irls.h"
 #include "solvers/jacobi_pia.h"
 #include "solvers/lbfgs.h"
 #include "solvers/lm_schur.h"
@@ -36,6 +38,8 @@ namespace {
 SolverEntry (*const kBuiltInSolvers[])() = {
     &MakeSolverEntry<BandedQrSolver>,
     &MakeSolverEntry<BandedCholeskySolver>,
+    &MakeSolverEntry<DenseQrSolver>,
+    &IrlsEntry,
     &MakeSolverEntry<NewtonSolver>,
     &MakeSolverEntry<GimSolver>,
     &MakeSolverEntry<WeightedPiaSolver>,

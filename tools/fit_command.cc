@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "experiments/atomic_file.h"
+#include "experiments/curvature_figure.h"
 #include "experiments/figures.h"
 #include "experiments/fit_report.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
 #include "experiments/trace.h"
 #include "tools/command.h"
+#include "tools/fairing_flags.h"
 #include "tools/fit_request.h"
 #include "tools/fit_summary.h"
 #include "tools/interrupts.h"
@@ -24,6 +26,9 @@ DEFINE_string(iterates, "", "JSON lines, control points and parameters at each i
 DEFINE_string(figure, "",
               "SVG of data, control polygon and curve, drawn by gnuplot; its script (.gp) and data "
               "(.dat) stay beside it.");
+DEFINE_string(curvature_figure, "",
+              "SVG of the curvature: combs and curvature over arc length of the fit and, where it "
+              "has a fairing term, of the same fit without.");
 
 namespace batten {
 namespace {
@@ -66,11 +71,16 @@ std::vector<OutputFile> Outputs() {
   if (WasGiven("out")) outputs.push_back({"out", FLAGS_out});
   if (WasGiven("trace")) outputs.push_back({"trace", FLAGS_trace});
   if (WasGiven("iterates")) outputs.push_back({"iterates", FLAGS_iterates});
-  if (WasGiven("figure")) {
-    outputs.push_back({"figure", FLAGS_figure});
-    outputs.push_back({"figure", WithExtension(FLAGS_figure, ".gp")});
-    outputs.push_back({"figure", WithExtension(FLAGS_figure, ".dat")});
-  }
+  const auto add_figure = [&outputs](const std::string& flag, const std::string& path) {
+    if (!WasGiven(flag)) return;
+    for (const std::string& name :
+         {path, WithExtension(path, ".gp"), WithExtension(path, ".dat")}) {
+      outputs.push_back({flag, name});
+    }
+  };
+  add_figure("figure", FLAGS_figure);
+  add_figure("fairing_figure", FLAGS_fairing_figure);
+  add_figure("curvature_figure", FLAGS_curvature_figure);
   return outputs;
 }
 
@@ -86,21 +96,47 @@ struct Written {
   std::string problem;  // not empty: something is missing all the same
 };
 
-bool DrawFitFigure(const Problem& problem, const RunResult& run, FileBatch* batch, Written* written,
-                   std::string* error) {
-  const FigureResult figure = FitFigure(problem, run, WithExtension(FLAGS_figure, ""), batch);
+bool Drew(const FigureResult& figure, const std::string& flag, const std::string& path,
+          Written* written, std::string* error) {
   if (IsWriteError(figure)) {
     *error = figure.message;
     return false;
   }
-  if (figure.drawn) written->files.push_back(FLAGS_figure);
-  if (!figure.drawn) written->problem = "--figure: " + figure.message;
+  if (figure.drawn) written->files.push_back(path);
+  if (!figure.drawn) written->problem = "--" + flag + ": " + figure.message;
   return true;
+}
+
+bool DrawFitFigure(const Problem& problem, const RunResult& run, FileBatch* batch, Written* written,
+                   std::string* error) {
+  return Drew(FitFigure(problem, run, WithExtension(FLAGS_figure, ""), batch), "figure",
+              FLAGS_figure, written, error);
+}
+
+bool DrawChoice(const FairingChoice& choice, FileBatch* batch, Written* written,
+                std::string* error) {
+  const std::vector<PlotPanel> panels = FairingChoicePanels(choice);
+  return Drew(DrawPlot(WithExtension(FLAGS_fairing_figure, ""), panels, 3, batch), "fairing_figure",
+              FLAGS_fairing_figure, written, error);
+}
+
+bool DrawCurvature(const Problem& problem, const RunResult& run, FileBatch* batch, Written* written,
+                   std::string* error) {
+  const std::string stem = WithExtension(FLAGS_curvature_figure, "");
+  const CurveFit& fit = *problem.curve_fit();
+  if (fit.dimension() < 2 || !run.x.allFinite()) {
+    return Drew(NoFigure(stem, "curvature needs a curve in the plane or in space", batch),
+                "curvature_figure", FLAGS_curvature_figure, written, error);
+  }
+  const std::vector<PlotPanel> panels = CurvaturePanels(FitBesideTheUnfaired(problem, run.x));
+  return Drew(DrawPlot(stem, panels, static_cast<int>(panels.size()), batch), "curvature_figure",
+              FLAGS_curvature_figure, written, error);
 }
 
 /// All files or none: a full disk and an interrupt leave what was there before.
 bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spec,
-                const FitReport& report, Written* written, std::string* error) {
+                const FitReport& report, const FairingChoice& choice, Written* written,
+                std::string* error) {
   FileBatch batch;
   const auto write = [&](const std::string& flag, const std::string& path, const auto& fill) {
     if (!WasGiven(flag)) return true;
@@ -123,12 +159,15 @@ bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spe
   return write("out", FLAGS_out, fill_fit) && write("trace", FLAGS_trace, fill_trace) &&
          write("iterates", FLAGS_iterates, fill_iterates) &&
          (!WasGiven("figure") || DrawFitFigure(problem, run, &batch, written, error)) &&
+         (!WasGiven("curvature_figure") || DrawCurvature(problem, run, &batch, written, error)) &&
+         (!WasGiven("fairing_figure") || DrawChoice(choice, &batch, written, error)) &&
          batch.Commit(error);
 }
 
 int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec& spec,
                 CommandOutput* output) {
-  const std::unique_ptr<Problem> problem = LoadFit(request, &output->error);
+  FairingChoice choice;
+  const std::unique_ptr<Problem> problem = LoadFit(request, &choice, &output->error);
   if (problem == nullptr) return kBadInput;
   RunResult run;
   if (!RunWithProgress(*problem, solver, spec, &run, &output->error)) return kBadInput;
@@ -140,7 +179,7 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
 
   const FitReport report = MeasureFit(*problem, run, spec);
   Written written;
-  if (!WriteFiles(*problem, run, spec, report, &written, &output->error)) return kBadInput;
+  if (!WriteFiles(*problem, run, spec, report, choice, &written, &output->error)) return kBadInput;
   output->results = FitSummary(request.label, *problem, run, report, written.files);
   if (report.audited && !report.verdict.holds) {
     output->error = "audit: " + solver.ToString() + " " + report.verdict.failure;
@@ -159,8 +198,12 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
   if (solvers.size() != 1) {
     return Refuse(RefusedFlag("solver", FLAGS_solver, "one solver"), output);
   }
-  if (WasGiven("figure") && WithExtension(FLAGS_figure, ".svg") != FLAGS_figure) {
-    return Refuse(RefusedFlag("figure", FLAGS_figure, kAllowedFigure), output);
+  for (const auto& [flag, path] : {std::pair("figure", FLAGS_figure),
+                                   {"fairing_figure", FLAGS_fairing_figure},
+                                   {"curvature_figure", FLAGS_curvature_figure}}) {
+    if (WasGiven(flag) && WithExtension(path, ".svg") != path) {
+      return Refuse(RefusedFlag(flag, path, kAllowedFigure), output);
+    }
   }
   FitRequest request;
   if (!MakeFitRequest(positional, &request, error)) return kBadInput;
@@ -200,6 +243,7 @@ Command FitCommand() {
     command.flags.push_back(TextFlag(name, "FILE", "a file"));
   }
   command.flags.push_back(TextFlag("figure", "FILE", kAllowedFigure));
+  command.flags.push_back(TextFlag("curvature_figure", "FILE", kAllowedFigure));
   command.flags.push_back(SwitchFlag("quiet"));
   command.run = &RunFit;
   return command;

@@ -3,7 +3,9 @@
 #include <gflags/gflags.h>
 
 #include "problems/catalogue.h"
+#include "problems/curve_constraints.h"
 #include "problems/fit_guard.h"
+#include "tools/fairing_flags.h"
 #include "tools/fitted_points.h"
 #include "tools/knot_file.h"
 #include "tools/run_flags.h"
@@ -50,6 +52,10 @@ DEFINE_string(guard, "none",
               "fairing term that every solver honours; /weight=W per data point.");
 DEFINE_bool(hold_ends, kDefaults.hold_ends,
             "Free parameters of an open curve: the first and the last one stay at the ends.");
+DEFINE_string(constraints, "",
+              "Hard constraints with their options, separated by commas: point/t=0.5/x=1/y=2, "
+              "derivative/t=0/order=1/x=3, ends, natural, clamped, not-a-knot, periodic "
+              "(docs/constraints.md).");
 
 namespace batten {
 namespace {
@@ -145,6 +151,16 @@ bool ApplyGuardFlag(FitSpec* spec, std::string* error) {
   return true;
 }
 
+bool ApplyConstraints(FitSpec* spec, std::string* error) {
+  if (!WasGiven("constraints")) return true;
+  bool is_good = ParseNameSpecList(FLAGS_constraints, &spec->constraints, error);
+  for (const NameSpec& name : spec->constraints) {
+    is_good = is_good && CheckConstraint(name, error);
+  }
+  if (!is_good) *error = "--constraints: " + *error;
+  return is_good;
+}
+
 bool ApplyStart(FitRequest* request, std::string* error) {
   FitSpec* spec = &request->spec;
   spec->start_points.resize(0, 0);
@@ -188,20 +204,24 @@ bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
 
 std::vector<FlagInfo> FitRequestFlags() {
   constexpr double kLowestDegree = 1.0;
-  return {TextFlag("problem", "NAME", "a name of batten list problems, a problem file"),
-          SwitchFlag("closed"),
-          NumberFlag("degree", "P", kLowestDegree, kMaxDegree),
-          NumberFlag("control_points", "N", 1.0, kMaxControlPoints),
-          WordFlag("parameters", {"uniform", "chord_length", "centripetal", "given"}),
-          TextFlag("knots", "KNOTS", kAllowedKnots),
-          WordFlag("ends", {"end_interpolating", "floating"}),
-          TextFlag("domain", "A,B", kAllowedDomain),
-          TextFlag("terms", "TERMS", "terms of batten list terms, separated by commas"),
-          TextFlag("start", "START", "data, centroid, circle, ellipse, or a file of batten fit"),
-          WordFlag("parameter_kind", {"fixed", "free", "projected"}),
-          SwitchFlag("hold_ends"),
-          SwitchFlag("keep_order"),
-          TextFlag("guard", "GUARD", "none, length or bending, with /weight=W")};
+  std::vector<FlagInfo> flags = {
+      TextFlag("problem", "NAME", "a name of batten list problems, a problem file"),
+      SwitchFlag("closed"),
+      NumberFlag("degree", "P", kLowestDegree, kMaxDegree),
+      NumberFlag("control_points", "N", 1.0, kMaxControlPoints),
+      WordFlag("parameters", {"uniform", "chord_length", "centripetal", "given"}),
+      TextFlag("knots", "KNOTS", kAllowedKnots),
+      WordFlag("ends", {"end_interpolating", "floating"}),
+      TextFlag("domain", "A,B", kAllowedDomain),
+      TextFlag("terms", "TERMS", "terms of batten list terms, separated by commas"),
+      TextFlag("start", "START", "data, centroid, circle, ellipse, or a file of batten fit"),
+      WordFlag("parameter_kind", {"fixed", "free", "projected"}),
+      SwitchFlag("hold_ends"),
+      SwitchFlag("keep_order"),
+      TextFlag("guard", "GUARD", "none, length or bending, with /weight=W"),
+      TextFlag("constraints", "LIST", "constraints of docs/constraints.md, with commas between")};
+  for (FlagInfo& flag : FairingFlags()) flags.push_back(std::move(flag));
+  return flags;
 }
 
 bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* request,
@@ -220,8 +240,9 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
     spec->parameters.reset();
     if (FromString(FLAGS_parameters, &rule)) spec->parameters = rule;
   }
+  if (!CheckFairingFlags(error)) return false;
   if (!ApplyKnots(request, error) || !ApplyDomain(spec, error) || !ApplyTerms(spec, error) ||
-      !ApplyGuardFlag(spec, error)) {
+      !ApplyGuardFlag(spec, error) || !ApplyConstraints(spec, error)) {
     return false;
   }
   if (spec->given_knots.empty()) {
@@ -238,10 +259,13 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
   return true;
 }
 
-std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::string* error) {
+std::unique_ptr<Problem> LoadFit(const FitRequest& request, FairingChoice* choice,
+                                 std::string* error) {
   std::optional<DataSet> data = ReadDataSet(request.data_path, error);
   if (!data.has_value()) return nullptr;
-  std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), request.spec, error);
+  FitSpec spec = request.spec;
+  if (!ApplyFairingFlags(*data, &spec, choice, error)) return nullptr;
+  std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), std::move(spec), error);
   if (problem == nullptr) *error = request.source + ": " + *error;
   return problem;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/fairing_choice.h"
 #include "problems/fit_problem.h"
 #include "tools/flags.h"
 
@@ -29,7 +30,8 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
                     std::string* error);
 
 /// Reads the data and makes the problem; null with one sentence in `error`.
-std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::string* error);
+std::unique_ptr<Problem> LoadFit(const FitRequest& request, FairingChoice* choice,
+                                 std::string* error);
 
 }  // namespace batten
 

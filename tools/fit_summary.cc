@@ -99,6 +99,15 @@ std::string ShapeText(const CurveShape& shape) {
          (loops == 0 ? "no loops" : Plural(loops, "loop")) + " without data";
 }
 
+std::string FairnessText(const CurveFairness& fairness) {
+  const std::string extrema = "curvature extrema " + std::to_string(fairness.num_curvature_extrema);
+  return "bending energy " + Short(fairness.bending_energy) + ", curvature up to " +
+         Short(fairness.max_curvature) + ", its variation " + Short(fairness.curvature_variation) +
+         ", " + extrema +
+         (fairness.num_inflections < 0 ? ""
+                                       : ", " + Plural(fairness.num_inflections, "inflection"));
+}
+
 std::string AuditText(const FitReport& report) {
   if (!report.audited) return "none: it covers distances without loss and constraints only";
   if (!report.verdict.holds) return "FAILED: " + report.verdict.failure;
@@ -116,6 +125,7 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
   text += Line("", "rms " + Short(report.rms_orthogonal) + ", largest " +
                        Short(report.max_orthogonal) + " (orthogonal)");
   if (report.shape.has_value()) text += Line("shape", ShapeText(*report.shape));
+  if (report.fairness.has_value()) text += Line("fairness", FairnessText(*report.fairness));
   if (report.audited && report.audit.num_sharing > 0) {
     text += Line("order", std::to_string(report.audit.num_sharing) +
                               " points share a parameter with a neighbour");

@@ -54,14 +54,21 @@ class KnotWords {
   int line_ = 1;
 };
 
-}  // namespace
+/// What a file of numbers is read for.
+struct Purpose {
+  std::string flag;
+  std::string allowed;  // of the flag
+  std::string noun;     // "knots"
+  bool nondecreasing = false;
+};
 
-bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::string* error) {
+bool ReadNumbers(const std::string& path, const Purpose& purpose, std::vector<double>* numbers,
+                 std::string* error) {
   constexpr char kAllowed[] = "numbers, separated by white space or commas";
   constexpr size_t kMost = kMaxControlPoints + 2 * kMaxDegree + 1;
   std::ifstream file;
   if (!OpenInput(path, &file, error)) {
-    *error = RefusedFlag("knots", path, kAllowedKnots) + " (" + *error + ")";
+    *error = RefusedFlag(purpose.flag, path, purpose.allowed) + " (" + *error + ")";
     return false;
   }
   KnotWords words(&file);
@@ -71,21 +78,32 @@ bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::stri
     return false;
   };
   for (std::string word; words.Next(&word);) {
-    double knot = 0.0;
-    if (!ParseNumber(word, &knot)) return refuse("\"" + word.substr(0, 40) + "\"", kAllowed);
-    if (!knots->empty() && knot < knots->back()) {
-      return refuse(word + " after " + NumberText(knots->back()), "knots that do not decrease");
+    double number = 0.0;
+    if (!ParseNumber(word, &number)) return refuse("\"" + word.substr(0, 40) + "\"", kAllowed);
+    if (purpose.nondecreasing && !numbers->empty() && number < numbers->back()) {
+      return refuse(word + " after " + NumberText(numbers->back()),
+                    purpose.noun + " that do not decrease");
     }
-    if (knots->size() == kMost) {
-      return refuse("more than " + std::to_string(kMost) + " knots", "as many as that");
+    if (numbers->size() == kMost) {
+      return refuse("more than " + std::to_string(kMost) + " " + purpose.noun, "as many as that");
     }
-    knots->push_back(knot);
+    numbers->push_back(number);
   }
   if (file.bad()) {
     *error = CannotBeRead(path, errno);
     return false;
   }
-  return !knots->empty() || refuse("no knots", kAllowed);
+  return !numbers->empty() || refuse("no " + purpose.noun, kAllowed);
+}
+
+}  // namespace
+
+bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::string* error) {
+  return ReadNumbers(path, {"knots", kAllowedKnots, "knots", true}, knots, error);
+}
+
+bool ReadSpanWeightFile(const std::string& path, std::vector<double>* weights, std::string* error) {
+  return ReadNumbers(path, {"span_weights", kAllowedSpanWeights, "weights", false}, weights, error);
 }
 
 }  // namespace batten

@@ -15,6 +15,12 @@ inline constexpr char kAllowedKnots[] =
 /// decrease, and more of them than any spline has.
 bool ReadKnotFile(const std::string& path, std::vector<double>* knots, std::string* error);
 
+/// What --span_weights may be, for messages.
+inline constexpr char kAllowedSpanWeights[] =
+    "numbers of 0 or more separated by commas, a file of numbers";
+/// The same of weights, in any order.
+bool ReadSpanWeightFile(const std::string& path, std::vector<double>* weights, std::string* error);
+
 }  // namespace batten
 
 #endif  // BATTEN_TOOLS_KNOT_FILE_H_

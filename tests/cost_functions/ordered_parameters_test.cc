@@ -76,9 +76,9 @@ TEST(OrderedParameters, HaveTheDerivativeOfDifferences) {
     const Eigen::VectorXd s = RandomVector(9, &random), v = RandomVector(9, &random);
     constexpr double kStep = 1e-7;  // shorter than any distance between neighbours here
     const OrderedParameters order(s, period);
-    const Eigen::VectorXd difference = (OrderedParameters(s + kStep * v, period).t -
-                                        OrderedParameters(s - kStep * v, period).t) /
-                                       (2.0 * kStep);
+    const Eigen::VectorXd difference =
+        (OrderedParameters(s + kStep * v, period).t - OrderedParameters(s - kStep * v, period).t) /
+        (2.0 * kStep);
     EXPECT_LT((order.Apply(v) - difference).norm(), 100 * kEps / kStep);
     const Eigen::VectorXd w = RandomVector(9, &random);
     EXPECT_NEAR(order.Apply(v).dot(w), v.dot(order.ApplyTransposed(w)), 64 * kEps);

@@ -15,7 +15,7 @@ FitReport Report(const Problem& problem, const std::string& solver, int iteratio
   return MeasureFit(problem, RunSolver(problem, solver, spec), spec);
 }
 
-constexpr const char* kSolvers[] = {"lbfgs",  "ceres_lbfgs", "ceres_lm", "newton", "foot_newton",
+constexpr const char* kSolvers[] = {"lbfgs",    "ceres_lbfgs", "ceres_lm", "newton", "foot_newton",
                                     "lm_schur", "varpro",      "pdm",      "tdm",    "sdm"};
 
 TEST(Guards, LeaveNoLoopWhateverTheSolver) {
@@ -38,8 +38,7 @@ TEST(Guards, LeaveNoLoopWhateverTheSolver) {
 }
 
 TEST(ProjectedFits, AreAuditedAtTheirFeet) {
-  const auto problem =
-      MakeFileFit("animals/rhino_100.csv", MakeProjectedSpec(3, true, 12));
+  const auto problem = MakeFileFit("animals/rhino_100.csv", MakeProjectedSpec(3, true, 12));
   for (const char* solver : {"lbfgs", "newton", "lm_schur", "pdm"}) {
     const FitReport report = Report(*problem, solver, 50);
     EXPECT_TRUE(report.audited && report.verdict.holds) << solver << report.verdict.failure;

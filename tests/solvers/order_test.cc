@@ -26,9 +26,7 @@ std::unique_ptr<Problem> Zigzag(bool closed, bool keep_order, bool hold_ends = f
   return MakeFit(data, spec);
 }
 
-bool IsInOrder(const Eigen::VectorXd& t) {
-  return std::is_sorted(t.data(), t.data() + t.size());
-}
+bool IsInOrder(const Eigen::VectorXd& t) { return std::is_sorted(t.data(), t.data() + t.size()); }
 
 TEST(OrderOfPoints, IsKeptByLbfgsUpToAConstrainedMinimum) {
   for (const auto& [closed, hold_ends] :

@@ -1,0 +1,48 @@
+#ifndef BATTEN_EXPERIMENTS_FAIRING_CHOICE_H_
+#define BATTEN_EXPERIMENTS_FAIRING_CHOICE_H_
+
+#include <string>
+#include <vector>
+
+#include "experiments/plot.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+/// How the weight of a fairing term is found from the data.
+/// gcv: the least V = (RSS / (m d)) / (1 - tr(H) / m)^2, H the hat matrix (Craven & Wahba 1979).
+/// discrepancy: RSS = m d noise^2, the noise known (Morozov; Reinsch 1967).
+/// lcurve: the sharpest bend of log bend over log RSS (Hansen 1992).
+enum class FairingRule { kGcv, kDiscrepancy, kLCurve };
+const char* ToString(FairingRule rule);
+bool FromString(const std::string& text, FairingRule* rule);
+
+struct FairingSample {
+  double weight = 0.0;
+  double residual = 0.0;  ///< RSS: energy of the other terms, in the user's units.
+  double bend = 0.0;      ///< Energy of the fairing term at weight 1.
+  double trace = 0.0;     ///< Effective number of control points.
+  /// What the rule judges: V; RSS / (m d noise^2); curvature of the L.
+  double score = 0.0;
+};
+
+struct FairingChoice {
+  FairingRule rule = FairingRule::kGcv;
+  double weight = 0.0;
+  std::vector<FairingSample> samples;  ///< All that were tried, by weight.
+};
+
+/// Sets the weight of the one fairing term of `spec`, adding one of derivative 2 where there is
+/// none. `noise`: standard deviation of each coordinate in the user's units, for discrepancy. Each
+/// sample costs one QR and one pass over R. False with one sentence in `error` for what the rule
+/// cannot judge: losses, free parameters, several fairing terms, as many control points as points
+/// without any residual, a noise that no weight leads to.
+bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, FitSpec* spec,
+                         FairingChoice* choice, std::string* error);
+
+/// The curve of the choice: score over weight, and RSS and trace beside it.
+std::vector<PlotPanel> FairingChoicePanels(const FairingChoice& choice);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_FAIRING_CHOICE_H_

@@ -1,0 +1,52 @@
+#ifndef BATTEN_EXPERIMENTS_FAIRING_PAPER_H_
+#define BATTEN_EXPERIMENTS_FAIRING_PAPER_H_
+
+#include <string>
+#include <vector>
+
+#include "experiments/reproduction.h"
+#include "problems/fit_problem.h"
+
+namespace batten {
+
+/// "B-Spline (11): spline curve fitting - fairing approximation" (a Chinese series by whudj, 2017,
+/// after Luo Weilan 2003 and Lan Hao 2008), run again: open cubics with a knot at every data
+/// point's centripetal parameter, alpha integral |C''|^2 + beta sum |C(u_i) - F_i|^2.
+Reproduction FairingPaper();
+
+// Its experiments, one file each, fairing_paper_NAME.cc.
+Experiment FairingPaperCircle();
+Experiment FairingPaperShapes();
+Experiment FairingPaperMethod();
+
+/// One of the source's pairs (alpha, beta); interpolation has no alpha.
+struct FairingRatio {
+  const char* name;
+  double alpha;
+  double beta;
+};
+inline constexpr FairingRatio kFairingRatios[] = {{"interpolation", 0.0, 1.0},
+                                                  {"0.01 : 1", 0.01, 1.0},
+                                                  {"1 : 1", 1.0, 1.0},
+                                                  {"1 : 0.01", 1.0, 0.01}};
+
+/// The source's problem over `points` (m x d): parameters the sums of the roots of the chords, not
+/// normalised, knots there, Bessel end tangents as two more rows of weight beta.
+std::shared_ptr<const Problem> SourceFit(const Points& points, double alpha, double beta);
+
+/// Columns of FairnessCells.
+std::vector<std::string> FairnessColumns();
+/// rms of the residuals, largest residual, bending energy, variation of the curvature, largest
+/// curvature, extrema, inflections of a fit at x.
+std::vector<std::string> FairnessCells(const Problem& problem, const Eigen::VectorXd& x);
+
+/// Rows "setting, s, x, y, kappa": the curve and its curvature, `most` samples or some more.
+std::vector<std::string> CurveColumns();
+void AddCurveRows(const std::vector<std::string>& first, const Problem& problem,
+                  const Eigen::VectorXd& x, int most, CsvTable* table);
+/// Panels of the curves and of the curvatures of `rows` (CurveColumns()), by setting.
+std::vector<PlotPanel> CurveAndCurvaturePanels(const std::string& title, const CsvTable& rows);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_FAIRING_PAPER_H_

@@ -1,0 +1,277 @@
+#include "problems/curve_constraints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "cost_functions/bessel_tangents.h"
+#include "problems/fit_problem.h"
+#include "splines/basis_functions.h"
+
+namespace batten {
+namespace {
+
+constexpr const char* kCoordinates[] = {"x", "y", "z", "w"};
+constexpr double kFree = std::numeric_limits<double>::infinity();
+constexpr double kLargest = 1e150;
+
+OptionInfo EndOption() {
+  return OptionInfo::Word("end", "both", {"both", "begin", "end"}, "which end of the domain");
+}
+
+OptionInfo ParameterOption() {
+  return OptionInfo::Real("t", kFree, -kLargest, kFree, "parameter, in the domain");
+}
+
+std::vector<OptionInfo> WithCoordinates(std::vector<OptionInfo> options) {
+  for (const char* name : kCoordinates) {
+    options.push_back(OptionInfo::Real(name, kFree, -kLargest, kFree,
+                                       std::string("coordinate ") + name + "; inf: not given"));
+  }
+  return options;
+}
+
+/// One linear functional of the curve: sum of factor * C^(order)(parameter).
+struct Functional {
+  struct Part {
+    double factor;
+    double parameter;
+    int order;
+    int span;
+  };
+  std::string name;
+  std::vector<Part> parts;
+  Eigen::RowVectorXd value;       ///< Infinite: that coordinate stays free.
+  bool value_is_a_point = false;  ///< Else a derivative, which moving the origin does not change.
+};
+
+class Builder {
+ public:
+  Builder(const CurveFit& fit, const NameSpec& spec, OptionValues options, std::string* error)
+      : fit_(fit), basis_(fit.basis()), spec_(spec), options_(std::move(options)), error_(error) {}
+
+  bool Build() {
+    if (spec_.name == "point") return AddAt(0);
+    if (spec_.name == "derivative") return AddAt(options_.Integer("order"));
+    if (basis_.periodic()) {
+      return Refuse("needs an open curve; a closed one has no ends");
+    }
+    if (spec_.name == "ends") return AddEnds(0);
+    if (spec_.name == "natural") return AddEnds(2);
+    if (spec_.name == "clamped") return AddEnds(1);
+    if (spec_.name == "not-a-knot") return AddNotAKnot();
+    return AddPeriodic();
+  }
+
+  void Append(std::vector<LinearConstraint>* constraints) const {
+    for (const Functional& functional : functionals_) {
+      for (int c = 0; c < fit_.dimension(); ++c) {
+        if (functional.value[c] == kFree) continue;
+        constraints->push_back(Constraint(functional, c));
+      }
+    }
+  }
+
+ private:
+  bool Refuse(const std::string& why) const {
+    *error_ = "constraint " + spec_.ToString() + " " + why;
+    return false;
+  }
+
+  /// Values of the options x, y, ...; false if one is not a coordinate of the data.
+  bool GivenCoordinates(Eigen::RowVectorXd* value) const {
+    for (int c = 0; c < kMaxDimension; ++c) {
+      const double given = options_.Real(kCoordinates[c]);
+      if (given == kFree) continue;
+      if (c >= fit_.dimension()) {
+        return Refuse(std::string("gives ") + kCoordinates[c] + ", but the data have dimension " +
+                      std::to_string(fit_.dimension()));
+      }
+      (*value)[c] = given;
+    }
+    return true;
+  }
+
+  bool CheckOrder(int order) const {
+    if (order <= basis_.degree()) return true;
+    return Refuse("needs degree " + std::to_string(order) + " or more; found " +
+                  std::to_string(basis_.degree()));
+  }
+
+  bool AddAt(int order) {
+    double t = options_.Real("t");
+    const double begin = basis_.domain_begin();
+    const double end = basis_.domain_end();
+    if (!(t >= begin && t <= end)) {
+      const std::string found = t == kFree ? "has no t" : "has t = " + NumberText(t);
+      return Refuse(found + "; allowed: " + NumberText(begin) + " to " + NumberText(end));
+    }
+    t = basis_.Wrap(t);
+    Functional functional;
+    functional.value.setConstant(fit_.dimension(), kFree);
+    if (!CheckOrder(order) || !GivenCoordinates(&functional.value)) return false;
+    if ((functional.value.array() == kFree).all()) {
+      return Refuse("holds nothing; give at least one of x, y, z, w");
+    }
+    functional.name = spec_.ToString();
+    functional.parts = {{1.0, t, order, basis_.FindSpan(t)}};
+    functional.value_is_a_point = order == 0;
+    functionals_.push_back(std::move(functional));
+    return true;
+  }
+
+  bool AddEnds(int order) {
+    if (!CheckOrder(order)) return false;
+    for (const bool at_end : {false, true}) {
+      if (options_.Word("end") == (at_end ? "begin" : "end")) continue;
+      Functional functional;
+      functional.name = spec_.ToString() + (at_end ? " at the end" : " at the begin");
+      functional.value_is_a_point = order == 0;
+      if (!EndValue(order, at_end, &functional.value)) return false;
+      const double t = at_end ? basis_.domain_end() : basis_.domain_begin();
+      functional.parts = {{1.0, t, order, basis_.FindSpan(t)}};
+      functionals_.push_back(std::move(functional));
+    }
+    return true;
+  }
+
+  bool EndValue(int order, bool at_end, Eigen::RowVectorXd* value) const {
+    const auto last = fit_.data().points.rows() - 1;
+    *value = Eigen::RowVectorXd::Zero(fit_.dimension());
+    if (order == 0) *value = fit_.data().points.row(at_end ? last : 0);
+    if (order != 1) return true;
+    const std::optional<Eigen::RowVectorXd> bessel = BesselTangent(fit_.setting(), at_end);
+    if (bessel.has_value()) {
+      *value = *bessel;
+    } else {
+      value->setConstant(kFree);
+    }
+    if (!GivenCoordinates(value)) return false;
+    return (value->array() != kFree).all() ||
+           Refuse("finds no Bessel tangent: all parameters are equal; give x, y, ... instead");
+  }
+
+  bool AddNotAKnot() {
+    const std::vector<double>& u = basis_.knots();
+    const int first = basis_.FindSpan(basis_.domain_begin());
+    const int last = basis_.FindSpan(basis_.domain_end());
+    if (first == last) return Refuse("needs a knot inside the domain; found none");
+    const int p = basis_.degree();
+    for (const bool at_end : {false, true}) {
+      if (options_.Word("end") == (at_end ? "begin" : "end")) continue;
+      // The knot between the first two spans, or the last two.
+      const double knot = u[static_cast<std::size_t>(at_end ? last : first + 1)];
+      Functional functional;
+      functional.name = spec_.ToString() + (at_end ? " at the end" : " at the begin");
+      functional.value.setZero(fit_.dimension());
+      const int right = basis_.FindSpan(knot);
+      int left = right - 1;
+      while (!(u[static_cast<std::size_t>(left)] < knot)) --left;
+      functional.parts = {{1.0, knot, p, right}, {-1.0, knot, p, left}};
+      functionals_.push_back(std::move(functional));
+    }
+    return true;
+  }
+
+  bool AddPeriodic() {
+    for (int order = 0; order < basis_.degree(); ++order) {
+      Functional functional;
+      functional.name = spec_.ToString() + " in derivative " + std::to_string(order);
+      functional.value.setZero(fit_.dimension());
+      const double begin = basis_.domain_begin();
+      const double end = basis_.domain_end();
+      functional.parts = {{1.0, begin, order, basis_.FindSpan(begin)},
+                          {-1.0, end, order, basis_.FindSpan(end)}};
+      functionals_.push_back(std::move(functional));
+    }
+    return true;
+  }
+
+  /// In the fit's own variables, which are scaled; divided by the largest coefficient, so that
+  /// derivatives on short spans count like points.
+  LinearConstraint Constraint(const Functional& functional, int c) const {
+    LinearConstraint constraint;
+    constraint.name = functional.name + " (" + kCoordinates[c] + ")";
+    std::map<int, double> coefficients;
+    double values[(kMaxDegree + 1) * kMaxOrder];
+    for (const Functional::Part& part : functional.parts) {
+      EvaluateBasisDerivatives(basis_.degree(), basis_.knots().data(), part.span, part.parameter,
+                               part.order, values);
+      for (int j = 0; j <= basis_.degree(); ++j) {
+        const int point = basis_.ControlPointIndex(part.span - basis_.degree() + j);
+        coefficients[point] += part.factor * values[part.order * basis_.order() + j];
+      }
+    }
+    double largest = 0.0;
+    for (const auto& entry : coefficients) largest = std::max(largest, std::abs(entry.second));
+    const FitSetting& setting = fit_.setting();
+    const double origin = functional.value_is_a_point ? setting.center[c] : 0.0;
+    constraint.value = (functional.value[c] - origin) * setting.scale / largest;
+    for (const auto& [point, coefficient] : coefficients) {
+      if (coefficient == 0.0) continue;
+      constraint.coefficients.emplace_back(
+          setting.control_point_offset + point * fit_.dimension() + c, coefficient / largest);
+    }
+    return constraint;
+  }
+
+  const CurveFit& fit_;
+  const BsplineBasis& basis_;
+  const NameSpec& spec_;
+  OptionValues options_;
+  std::string* error_;
+  std::vector<Functional> functionals_;
+};
+
+bool ResolveConstraint(const NameSpec& spec, OptionValues* options, std::string* error) {
+  std::vector<std::string> names;
+  for (const ConstraintInfo& info : KnownConstraints()) {
+    names.push_back(info.name);
+    if (info.name != spec.name) continue;
+    if (spec.wrapped != nullptr) {
+      *error = "constraint " + spec.name + " wraps nothing; found :" + spec.wrapped->ToString();
+      return false;
+    }
+    return ResolveOptions(info.options, spec, options, error);
+  }
+  *error = UnknownNameMessage("constraint", spec.name, names);
+  return false;
+}
+
+}  // namespace
+
+std::vector<ConstraintInfo> KnownConstraints() {
+  return {
+      {"point", "the curve passes a point at a parameter", WithCoordinates({ParameterOption()})},
+      {"derivative", "a derivative at a parameter",
+       WithCoordinates({ParameterOption(), OptionInfo::Integer("order", 1, 1, kMaxDegree,
+                                                               "order of the derivative")})},
+      {"ends", "the curve begins and ends in the first and last data point", {EndOption()}},
+      {"natural", "no second derivative at the ends", {EndOption()}},
+      {"clamped", "Bessel's or a given derivative at the ends", WithCoordinates({EndOption()})},
+      {"not-a-knot", "no jump at the first and last inner knot", {EndOption()}},
+      {"periodic", "the same value and derivatives at both ends", {}},
+  };
+}
+
+bool CheckConstraint(const NameSpec& spec, std::string* error) {
+  OptionValues options;
+  return ResolveConstraint(spec, &options, error);
+}
+
+bool AppendCurveConstraints(const std::vector<NameSpec>& specs, const CurveFit& fit,
+                            std::vector<LinearConstraint>* constraints, std::string* error) {
+  for (const NameSpec& spec : specs) {
+    OptionValues options;
+    if (!ResolveConstraint(spec, &options, error)) return false;
+    Builder builder(fit, spec, options, error);
+    if (!builder.Build()) return false;
+    builder.Append(constraints);
+  }
+  return true;
+}
+
+}  // namespace batten

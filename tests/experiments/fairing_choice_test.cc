@@ -1,0 +1,256 @@
+#include "experiments/fairing_choice.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "problems/curve_view.h"
+#include "splines/normal_band.h"
+#include "tests/experiments/outlines.h"
+
+namespace batten {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Rows of scipy_smoothing.csv, which scipy_smoothing.py beside it writes: name, kind, numbers.
+using ScipyRows = std::map<std::string, std::map<std::string, std::vector<double>>>;
+ScipyRows ReadScipyRows() {
+  std::ifstream file(BATTEN_SOURCE_DIR "/tests/experiments/scipy_smoothing.csv");
+  ScipyRows rows;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream fields(line);
+    std::string name, kind, field;
+    std::getline(fields, name, ',');
+    std::getline(fields, kind, ',');
+    while (std::getline(fields, field, ',')) rows[name][kind].push_back(std::stod(field));
+  }
+  return rows;
+}
+
+/// y over x with a knot at each x.
+struct FunctionFit {
+  explicit FunctionFit(const std::map<std::string, std::vector<double>>& rows) {
+    const std::vector<double>& x = rows.at("x");
+    const auto m = static_cast<Eigen::Index>(x.size());
+    data.name = "function";
+    data.points = Eigen::Map<const Eigen::VectorXd>(rows.at("y").data(), m);
+    data.parameters = Eigen::Map<const Eigen::VectorXd>(x.data(), m);
+    spec.parameters.reset();
+    spec.given_knots = x;
+    spec.given_knots.insert(spec.given_knots.begin(), 3, x.front());
+    spec.given_knots.insert(spec.given_knots.end(), 3, x.back());
+  }
+  std::unique_ptr<Problem> Make(double weight) const {
+    FitSpec weighted = spec;
+    std::string error;
+    EXPECT_TRUE(ParseNameSpecList("interpolation,fairing/weight=" + NumberText(weight),
+                                  &weighted.terms, &error));
+    auto problem = MakeFitProblem(data, weighted, &error);
+    EXPECT_NE(problem, nullptr) << error;
+    return problem;
+  }
+  DataSet data;
+  FitSpec spec;
+};
+
+TEST(FairingAndScipy, GiveTheSameSmoothingSplineAtTheSameWeight) {
+  for (const auto& [name, rows] : ReadScipyRows()) {
+    const FunctionFit function(rows);
+    const std::vector<double>& x = rows.at("x");
+    for (const double weight : {1e-9, 1e-6, 1e-4, 1e-3}) {
+      const std::string text = weight == 1e-9   ? "1e-09"
+                               : weight == 1e-6 ? "1e-06"
+                               : weight == 1e-4 ? "0.0001"
+                                                : "0.001";
+      const std::vector<double>& theirs = rows.at("weight " + text);
+      const auto problem = function.Make(weight);
+      const BsplineCurve curve = problem->curve_fit()->Curve(RunSolver(*problem, "banded_qr").x);
+      Eigen::VectorXd middles(static_cast<Eigen::Index>(theirs.size()));
+      for (Eigen::Index i = 0; i < middles.size(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        middles[i] = 0.5 * (x[k] + x[k + 1]);
+      }
+      const Points ours = curve.Sample(middles);
+      for (Eigen::Index i = 0; i < middles.size(); ++i) {
+        EXPECT_NEAR(ours(i, 0), theirs[static_cast<std::size_t>(i)], 1e-8)
+            << name << " weight " << weight;
+      }
+    }
+  }
+}
+
+/// V = (RSS / m) / (1 - tr(H) / m)^2 by dense algebra in long double.
+double DenseGcv(const FunctionFit& function, double weight) {
+  using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const auto problem = function.Make(1.0);
+  const NormalBand data = NormalBand::FromRows(*problem->terms()[0].family->rows());
+  const NormalBand fairing = NormalBand::FromRows(*problem->terms()[1].family->rows());
+  const LongMatrix n = data.ToDense().cast<long double>();
+  const LongMatrix h = n + static_cast<long double>(weight) * fairing.ToDense().cast<long double>();
+  const Eigen::LDLT<LongMatrix> ldlt(h);
+  const Eigen::MatrixXd p =
+      ldlt.solve(LongMatrix(data.right_hand_side().cast<long double>())).cast<double>();
+  const auto m = static_cast<double>(function.data.points.rows());
+  const double trace = static_cast<double>(ldlt.solve(n).trace());
+  Eigen::VectorXd residuals;
+  EXPECT_EQ(problem->terms()[0].family->Residuals(
+                Eigen::Map<const Eigen::VectorXd>(p.data(), p.size()), &residuals),
+            Status::kOk);
+  return residuals.squaredNorm() / m / std::pow(1.0 - trace / m, 2);
+}
+
+TEST(FairingAndScipy, GcvFindsNoWorseAWeight) {
+  for (const auto& [name, rows] : ReadScipyRows()) {
+    FunctionFit function(rows);
+    FairingChoice choice;
+    std::string error;
+    ASSERT_TRUE(
+        ChooseFairingWeight(function.data, FairingRule::kGcv, 0.0, &function.spec, &choice, &error))
+        << error;
+    const double ours = DenseGcv(function, choice.weight);
+    EXPECT_LE(ours, DenseGcv(function, rows.at("gcv").front()) * (1.0 + 1e-8)) << name;
+    // What was judged is that number, in the user's units.
+    const auto chosen = std::find_if(choice.samples.begin(), choice.samples.end(),
+                                     [&](const auto& s) { return s.weight == choice.weight; });
+    ASSERT_NE(chosen, choice.samples.end());
+    const double unit = 1.0 / std::pow(function.Make(1.0)->curve_fit()->setting().scale, 2);
+    EXPECT_NEAR(chosen->score, ours * unit, 1e-6 * ours * unit) << name;
+    EXPECT_LE(choice.samples.size(), 30U);
+  }
+}
+
+/// A noisy curve of known truth; open or closed.
+struct NoisyCurve {
+  explicit NoisyCurve(unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0.0, 1.0);
+    closed = seed % 2 == 0;
+    const int m = 100 + static_cast<int>(seed % 5) * 25;
+    const double noise = 0.01 * std::pow(10.0, (seed % 3) * 0.5);
+    double waves[2][6];
+    for (auto& row : waves) {
+      for (double& wave : row) wave = normal(random);
+    }
+    data.name = "noisy";
+    data.points.resize(m, 2);
+    data.parameters = Eigen::VectorXd(m);
+    truth.resize(m, 2);
+    for (int i = 0; i < m; ++i) {
+      const double t = closed ? static_cast<double>(i) / m : static_cast<double>(i) / (m - 1);
+      (*data.parameters)[i] = t;
+      for (int c = 0; c < 2; ++c) {
+        double value = 0.0;
+        for (int k = 0; k < 3; ++k) {
+          const double a = (closed ? 2.0 : 1.3) * M_PI * (k + 1) * t;
+          value += (waves[c][2 * k] * std::cos(a) + waves[c][2 * k + 1] * std::sin(a)) / (k + 1);
+        }
+        truth(i, c) = value;
+        data.points(i, c) = value + noise * normal(random);
+      }
+    }
+    spec.closed = closed;
+    spec.control_points = m / 2;
+    spec.parameters.reset();
+    spec.domain = {0.0, 1.0};
+  }
+  double Error(double weight) const {
+    FitSpec weighted = spec;
+    std::string error;
+    EXPECT_TRUE(ParseNameSpecList("interpolation,fairing/weight=" + NumberText(weight),
+                                  &weighted.terms, &error));
+    const auto problem = MakeFitProblem(data, weighted, &error);
+    const CurveFit& fit = *problem->curve_fit();
+    const BsplineCurve curve = fit.Curve(RunSolver(*problem, "banded_qr").x);
+    return (curve.Sample(fit.parameters()) - truth).norm();
+  }
+  bool closed = false;
+  DataSet data;
+  Points truth;
+  FitSpec spec;
+};
+
+TEST(FairingChoice, ByGcvIsNearTheBestPossibleWeight) {
+  std::vector<double> ratios;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    NoisyCurve curve(seed);
+    FairingChoice choice;
+    FitSpec spec = curve.spec;
+    std::string error;
+    ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error))
+        << error;
+    // The best on a grid of tenths of decades: the error is flat there.
+    double best = std::numeric_limits<double>::infinity();
+    for (double power = -11.0; power <= -2.0; power += 0.25) {
+      best = std::min(best, curve.Error(std::pow(10.0, power)));
+    }
+    ratios.push_back(curve.Error(choice.weight) / best);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  EXPECT_LE(ratios[50], 1.1);
+  EXPECT_LE(ratios[89], 1.3);
+  RecordProperty("worst", NumberText(ratios.back()));
+}
+
+TEST(FairingChoice, ByDiscrepancyLeavesTheKnownNoise) {
+  NoisyCurve curve(7);
+  FairingChoice choice;
+  std::string error;
+  const double noise = 0.01 * std::sqrt(10.0);
+  ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kDiscrepancy, noise, &curve.spec,
+                                  &choice, &error))
+      << error;
+  const auto problem = MakeFitProblem(curve.data, curve.spec, &error);
+  const RunResult run = RunSolver(*problem, "banded_qr");
+  const double residual =
+      Objective(problem.get(), nullptr).TermEnergies(run.x)[0] * problem->units().energy;
+  const double expected = static_cast<double>(curve.data.points.size()) * noise * noise;
+  EXPECT_NEAR(residual, expected, 1e-6 * expected);
+  EXPECT_FALSE(ChooseFairingWeight(curve.data, FairingRule::kDiscrepancy, 1e-6, &curve.spec,
+                                   &choice, &error));
+  EXPECT_THAT(error, HasSubstr("give a larger noise"));
+  EXPECT_FALSE(ChooseFairingWeight(curve.data, FairingRule::kDiscrepancy, 1e6, &curve.spec, &choice,
+                                   &error));
+  EXPECT_THAT(error, HasSubstr("give a smaller noise"));
+}
+
+TEST(FairingChoice, ByTheLCurveLiesBetweenNoiseAndBend) {
+  NoisyCurve curve(8);
+  FairingChoice choice;
+  std::string error;
+  ASSERT_TRUE(
+      ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice, &error))
+      << error;
+  // Half as good as no fairing at all and as a line would be far worse than this.
+  EXPECT_LE(curve.Error(choice.weight), 0.9 * curve.Error(1e-14));
+  EXPECT_LE(curve.Error(choice.weight), 0.1 * curve.Error(1e6));
+}
+
+TEST(FairingChoice, RefusesWhatItCannotJudge) {
+  const NoisyCurve curve(9);
+  const auto why_not = [&](const std::string& terms, ParameterKind kind) {
+    FitSpec spec = curve.spec;
+    FairingChoice choice;
+    std::string error;
+    EXPECT_TRUE(ParseNameSpecList(terms, &spec.terms, &error));
+    spec.parameter_kind = kind;
+    EXPECT_FALSE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error));
+    return error;
+  };
+  EXPECT_EQ(why_not("interpolation/loss=huber/loss_scale=0.1", ParameterKind::kFixed),
+            "fairing=gcv cannot judge a loss, which makes the fit no linear one; give a weight");
+  EXPECT_EQ(why_not("free_parameter", ParameterKind::kFree),
+            "fairing=gcv cannot judge free parameters, which are no linear fit; give a weight");
+  EXPECT_EQ(why_not("interpolation,fairing,fairing/derivative=3", ParameterKind::kFixed),
+            "fairing=gcv chooses one weight; found 2 fairing terms");
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A smooth closed curve of size about 2 with noise, a tenth of its points thrown up to half that
+/// far away, and the curve itself.
+struct ThrownPoints {
+  ThrownPoints(unsigned seed, bool thrown) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0.0, 0.01);
+    std::uniform_real_distribution<double> far(-1.0, 1.0);
+    const int m = 200;
+    data.name = "thrown";
+    data.points.resize(m, 2);
+    truth.resize(m, 2);
+    for (int i = 0; i < m; ++i) {
+      const double a = 2.0 * M_PI * i / m;
+      truth.row(i) << std::cos(a) + 0.15 * std::cos(3 * a), 0.8 * std::sin(a);
+      data.points.row(i) = truth.row(i) + Eigen::RowVector2d(noise(random), noise(random));
+    }
+    std::vector<int> order(m);
+    for (int i = 0; i < m; ++i) order[i] = i;
+    std::shuffle(order.begin(), order.end(), random);
+    for (int k = 0; k < m / 10; ++k) {
+      const Eigen::RowVector2d away(far(random), far(random));
+      if (thrown) data.points.row(order[k]) += away;
+    }
+  }
+  std::unique_ptr<Problem> Fit(const std::string& terms) const {
+    FitSpec spec = MakeSpec(3, true, 20, terms);
+    spec.parameters = Parameterization::kUniform;
+    return MakeFit(data, spec);
+  }
+  /// Root mean square distance of the curve from the truth at the data's parameters.
+  double Error(const Problem& problem, const Eigen::VectorXd& x) const {
+    const CurveFit& fit = *problem.curve_fit();
+    return std::sqrt((fit.Curve(x).Sample(fit.parameters()) - truth).squaredNorm() /
+                     static_cast<double>(truth.rows()));
+  }
+  DataSet data;
+  Points truth;
+};
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+TEST(Irls, ReachesTheMinimumThatGradientMethodsFind) {
+  const ThrownPoints thrown(11, true);
+  for (const char* loss : {"huber", "cauchy", "tukey", "soft_l1"}) {
+    const auto problem = thrown.Fit("interpolation/loss=" + std::string(loss) +
+                                    "/loss_scale=0.02,fairing/weight=1e-6");
+    const SolverTrial ours(*problem, "irls:banded_qr", {2000, 1e-9, true});
+    EXPECT_TRUE(IsSuccess(ours.outcome.reason)) << loss << ToString(ours.outcome.reason);
+    const SolverTrial lbfgs(*problem, "lbfgs", {2000, 1e-9, true});
+    EXPECT_LE((ours.x - lbfgs.x).cwiseAbs().maxCoeff(), 1e-6) << loss;
+    const SolverTrial cholesky(*problem, "irls:banded_cholesky", {2000, 1e-9, true});
+    EXPECT_LE((ours.x - cholesky.x).cwiseAbs().maxCoeff(), 1e-6) << loss;
+  }
+}
+
+TEST(Irls, NeverRaisesTheEnergy) {
+  const auto problem = ThrownPoints(12, true).Fit("interpolation/loss=tukey/loss_scale=0.05");
+  const SolverTrial trial(*problem, "irls:banded_qr", {100, 1e-9, true});
+  Objective objective(problem.get(), nullptr);
+  double before = std::numeric_limits<double>::infinity();
+  for (const Eigen::VectorXd& x : trial.context.iterates()) {
+    double energy = 0.0;
+    ASSERT_EQ(objective.Energy(x, &energy), Status::kOk);
+    EXPECT_LE(energy, before * (1.0 + 1e-13));
+    before = energy;
+  }
+}
+
+TEST(Irls, OfATermWithoutLossIsItsBase) {
+  const auto problem = ThrownPoints(13, false).Fit("interpolation");
+  const SolverTrial ours(*problem, "irls:banded_qr");
+  const SolverTrial direct(*problem, "banded_qr");
+  EXPECT_LE((ours.x - direct.x).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(Irls, SaysWhichBasesItTakes) {
+  const auto problem = ThrownPoints(13, false).Fit("interpolation");
+  EXPECT_THAT(WhyUnsupported(*problem, "irls:lspia"),
+              HasSubstr("irls solves by a direct method, and lspia is none; use a base such as"));
+}
+
+TEST(RobustFits, AreHardlyWorseThanCleanOnesWhenATenthOfThePointsIsThrownAway) {
+  for (const char* loss : {"cauchy", "tukey"}) {
+    for (const char* solver : {"irls:banded_qr", "lbfgs", "ceres_lm", "ceres_lbfgs"}) {
+      std::vector<double> ratios;
+      for (unsigned seed = 100; seed < 150; ++seed) {
+        const ThrownPoints clean(seed, false), thrown(seed, true);
+        const auto plain = clean.Fit("interpolation");
+        const double reference = clean.Error(*plain, SolverTrial(*plain, "banded_qr").x);
+        const auto robust =
+            thrown.Fit("interpolation/loss=" + std::string(loss) + "/loss_scale=mad");
+        const SolverTrial trial(*robust, solver, {500, 1e-6, true});
+        ratios.push_back(thrown.Error(*robust, trial.x) / reference);
+      }
+      EXPECT_LE(Median(ratios), 1.15) << solver << " " << loss;
+      RecordProperty(std::string("worst ") + solver + " " + loss,
+                     NumberText(*std::max_element(ratios.begin(), ratios.end())));
+    }
+  }
+}
+
+TEST(RobustStart, FreezesTheEstimatedScaleNearTheNoise) {
+  const ThrownPoints thrown(14, true);
+  const auto problem = thrown.Fit("interpolation/loss=huber/loss_scale=mad");
+  const NameSpec& term = problem->curve_fit()->spec().terms.front();
+  double scale = 0.0;
+  ASSERT_TRUE(ParseNumber(term.options.back().second, &scale)) << term.ToString();
+  const double sigma = scale * problem->curve_fit()->size() / 1.345;
+  // A tenth of outliers moves the median from the 50th to the 56th percentile, 20 control points
+  // take a tenth of the freedom.
+  EXPECT_NEAR(sigma, 0.01, 0.002);
+}
+
+TEST(RobustStart, OfLossesThatAreNotConvexIsHubersAnswer) {
+  const ThrownPoints thrown(15, true);
+  // Scales whose ratio is that of the tuning constants.
+  const auto tukey = thrown.Fit("interpolation/loss=tukey/loss_scale=0.04685");
+  const auto huber = thrown.Fit("interpolation/loss=huber/loss_scale=0.01345");
+  const SolverTrial answer(*huber, "irls:banded_qr", {2000, 1e-9, true});
+  EXPECT_LE((tukey->start() - answer.all).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_GT((huber->start() - answer.all).cwiseAbs().maxCoeff(), 1e-2) << "its own start stays";
+}
+
+TEST(RobustStart, SaysWhatItCannotEstimate) {
+  std::string error;
+  FitSpec spec = MakeFreeSpec(3, true, 10, "circle", "free_parameter/loss=huber/loss_scale=mad");
+  EXPECT_EQ(MakeFitProblem(ThrownPoints(1, true).data, spec, &error), nullptr);
+  EXPECT_THAT(error, HasSubstr("mad needs fixed parameters"));
+  spec = MakeSpec(3, true, 200, "interpolation/loss=huber/loss_scale=mad");
+  EXPECT_EQ(MakeFitProblem(ThrownPoints(1, true).data, spec, &error), nullptr);
+  EXPECT_THAT(error, HasSubstr("too small for a scale; give a number instead of mad"));
+}
+
+}  // namespace
+}  // namespace batten

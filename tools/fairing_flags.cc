@@ -1,0 +1,84 @@
+#include "tools/fairing_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+
+#include "tools/knot_file.h"
+#include "tools/run_flags.h"
+
+DEFINE_string(fairing, "",
+              "Chooses the weight of the fairing term (added where --terms has none): gcv, "
+              "generalised cross-validation; discrepancy, from the known --noise; lcurve, the "
+              "corner of the L-curve.");
+DEFINE_double(noise, 0.0,
+              "With --fairing=discrepancy: standard deviation of each coordinate of the points, in "
+              "the data's unit of length.");
+DEFINE_string(fairing_units, "scale_free",
+              "Of terms that do not say it themselves: scale_free, the integral over a parameter "
+              "from 0 to 1; source, over the parameter as it is.");
+DEFINE_string(span_weights, "",
+              "Factors of fairing terms, one for each span that is not empty: numbers separated by "
+              "commas, or a file of numbers.");
+DEFINE_string(fairing_figure, "",
+              "With --fairing: SVG of the choice, what was judged at each weight that was tried.");
+
+namespace batten {
+namespace {
+
+/// Terms that have units; those that say theirs keep them.
+void ApplyUnits(FitSpec* spec) {
+  for (NameSpec& term : spec->terms) {
+    const bool has_units =
+        term.name == "fairing" || term.name == "end_tangent" || term.name == "end_curvature";
+    const bool says = std::any_of(term.options.begin(), term.options.end(),
+                                  [](const auto& option) { return option.first == "units"; });
+    if (has_units && !says) term.options.emplace_back("units", FLAGS_fairing_units);
+  }
+}
+
+bool ApplySpanWeights(FitSpec* spec, std::string* error) {
+  if (!WasGiven("span_weights")) return true;
+  if (ParseNumbers(FLAGS_span_weights, &spec->span_weights)) return true;
+  return ReadSpanWeightFile(FLAGS_span_weights, &spec->span_weights, error);
+}
+
+}  // namespace
+
+std::vector<FlagInfo> FairingFlags() {
+  constexpr double kLargestNoise = 1e150;
+  return {WordFlag("fairing", {"gcv", "discrepancy", "lcurve"}),
+          NumberAboveFlag("noise", "LENGTH", 0.0, kLargestNoise),
+          WordFlag("fairing_units", {"scale_free", "source"}),
+          TextFlag("span_weights", "NUMBERS", kAllowedSpanWeights),
+          TextFlag("fairing_figure", "FILE", "NAME.svg")};
+}
+
+bool CheckFairingFlags(std::string* error) {
+  const bool needs_noise = FLAGS_fairing == "discrepancy";
+  if (needs_noise != WasGiven("noise")) {
+    *error = needs_noise ? "--fairing: discrepancy needs --noise, the points' standard deviation"
+                         : RefusedFlag("noise", NumberText(FLAGS_noise),
+                                       "nothing, without --fairing=discrepancy");
+    return false;
+  }
+  if (WasGiven("fairing_figure") && !WasGiven("fairing")) {
+    *error = RefusedFlag("fairing_figure", FLAGS_fairing_figure, "nothing, without --fairing");
+    return false;
+  }
+  return true;
+}
+
+bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, FairingChoice* choice,
+                       std::string* error) {
+  if (!ApplySpanWeights(spec, error)) return false;
+  if (WasGiven("fairing_units")) ApplyUnits(spec);
+  if (!WasGiven("fairing")) return true;
+  FairingRule rule = FairingRule::kGcv;
+  FromString(FLAGS_fairing, &rule);
+  if (ChooseFairingWeight(data, rule, FLAGS_noise, spec, choice, error)) return true;
+  *error = "--" + *error;
+  return false;
+}
+
+}  // namespace batten

@@ -1,0 +1,27 @@
+#ifndef BATTEN_TOOLS_FAIRING_FLAGS_H_
+#define BATTEN_TOOLS_FAIRING_FLAGS_H_
+
+#include <gflags/gflags_declare.h>
+
+#include <string>
+#include <vector>
+
+#include "experiments/fairing_choice.h"
+#include "tools/flags.h"
+
+DECLARE_string(fairing_figure);
+
+namespace batten {
+
+/// --fairing, --noise, --fairing_units, --span_weights, --fairing_figure.
+std::vector<FlagInfo> FairingFlags();
+/// Flags that go together; false with one sentence in `error`.
+bool CheckFairingFlags(std::string* error);
+/// Units and weights of the spans into the fairing terms, and the weight that --fairing chooses
+/// from `data`, with how in *choice.
+bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, FairingChoice* choice,
+                       std::string* error);
+
+}  // namespace batten
+
+#endif  // BATTEN_TOOLS_FAIRING_FLAGS_H_
