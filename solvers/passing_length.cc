@@ -12,7 +12,8 @@ double SquaredFactor(const StopTest& stop, int n) {
   switch (stop.measure()) {
     case StopMeasure::kControlPoints:
     case StopMeasure::kPolygon: {
-      const double highest = 0.5 * (n / 2) * (n - n / 2);  // whole numbers: the middle point
+      const int middle = n / 2;
+      const double highest = 0.5 * middle * (n - middle);
       return limit / (highest * highest);
     }
     case StopMeasure::kFlatness: {
