@@ -130,9 +130,9 @@ OptionInfo UnitsOption(const std::string& source) {
 
 void AddCoordinates(const std::string& what, TermInfo* info) {
   for (const char* name : kCoordinates) {
-    info->options.push_back(OptionInfo::Real(name, kNotGiven, -1e150, kNotGiven,
-                                             std::string("coordinate ") + name + " of " + what +
-                                                 " instead; inf: not given"));
+    info->options.push_back(OptionInfo::Real(
+        name, kNotGiven, -1e150, kNotGiven,
+        std::string("coordinate ") + name + " of " + what + " instead; inf: not given"));
   }
 }
 

@@ -15,6 +15,7 @@ struct EndResidual {
   static TermInfo Info();
   static constexpr bool kAffine = true;
   static constexpr int kDerivatives = kDerivative;
+  static constexpr bool kOnlyHighestDerivative = true;
   static constexpr int NumResiduals(int dimension) { return dimension; }
 
   explicit EndResidual(std::shared_ptr<const Sites> ends) : ends_(std::move(ends)) {}
@@ -23,8 +24,8 @@ struct EndResidual {
   template <typename SiteType, typename T>
   bool operator()(const SiteType& site, const T* const* control_points, T* residuals) const {
     for (int c = 0; c < site.dimension(); ++c) {
-      residuals[c] = site.root_weight() *
-                     (site.Derivative(kDerivative, control_points, c) - site.point(c));
+      residuals[c] =
+          site.root_weight() * (site.Derivative(kDerivative, control_points, c) - site.point(c));
     }
     return true;
   }

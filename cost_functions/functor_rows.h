@@ -4,14 +4,24 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "cost_functions/affine_form.h"
 #include "cost_functions/fit_setting.h"
 #include "cost_functions/pack.h"
 #include "cost_functions/site.h"
+#include "splines/basis_derivative.h"
 #include "splines/basis_functions.h"
 
 namespace batten {
+
+/// Whether a functor says (kOnlyHighestDerivative) that of its site it asks for the derivative of
+/// order kDerivatives and no other.
+template <typename Functor, typename = void>
+struct AsksForOneDerivative : std::false_type {};
+template <typename Functor>
+struct AsksForOneDerivative<Functor, std::enable_if_t<Functor::kOnlyHighestDerivative>>
+    : std::true_type {};
 
 /// The rows of an affine residual functor that are alike for all coordinates, read out of the
 /// functor, kRowPack sites at a time; P and D as in FunctorKernel.
@@ -117,6 +127,10 @@ class FunctorRows {
     const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
     if constexpr (Functor::kDerivatives == 0) {
       span_basis.Evaluate(t, site.mutable_basis());
+    } else if constexpr (AsksForOneDerivative<Functor>::value) {
+      EvaluateBasisDerivative<P, Functor::kDerivatives>(
+          basis_.degree(), basis_.knots().data(), span, t,
+          site.mutable_basis() + Functor::kDerivatives * order());
     } else {
       EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span, t,
                                   Functor::kDerivatives, site.mutable_basis());

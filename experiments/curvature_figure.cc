@@ -27,9 +27,8 @@ double LongestSide(const Samples& samples) {
   double longest = 0.0;
   for (int c = 0; c < 2; ++c) {
     const auto [low, high] =
-        std::minmax_element(samples.begin(), samples.end(), [c](const auto& a, const auto& b) {
-          return a.point[c] < b.point[c];
-        });
+        std::minmax_element(samples.begin(), samples.end(),
+                            [c](const auto& a, const auto& b) { return a.point[c] < b.point[c]; });
     longest = std::max(longest, high->point[c] - low->point[c]);
   }
   return longest;

@@ -52,8 +52,7 @@ CurvatureSample MakeSample(const BsplineCurve& curve, int span, double t, double
   sample.kappa = bend / squared_speed;
   if (d == 2) {
     // The cross product itself, which does not lose digits where the curve is nearly straight.
-    sample.kappa =
-        (c[1][0] * c[2][1] - c[1][1] * c[2][0]) / (squared_speed * *speed);
+    sample.kappa = (c[1][0] * c[2][1] - c[1][1] * c[2][0]) / (squared_speed * *speed);
   }
   return sample;
 }

@@ -28,7 +28,7 @@ struct CurveFairness {
   double bending_energy = 0.0;  ///< integral of kappa^2 ds
   /// integral of |d kappa / ds| ds: all rises and falls of the curvature, jumps at knots included.
   double curvature_variation = 0.0;
-  double max_curvature = 0.0;  ///< Largest |kappa|...
+  double max_curvature = 0.0;     ///< Largest |kappa|...
   double max_curvature_at = 0.0;  ///< ...and its parameter.
   /// Local extrema of kappa inside the curve. Ups and downs of less than 1e-6 of the largest
   /// |kappa| are none: the curvature of a circle has no extremum that is more than rounding.

@@ -122,7 +122,8 @@ class Chooser {
   bool Scan(std::string* error) {
     const double middle = std::log10(family_.BalancedWeight());
     if (!std::isfinite(middle)) {
-      *error = "the fairing term is zero for every curve of this kind; there is no weight to choose";
+      *error =
+          "the fairing term is zero for every curve of this kind; there is no weight to choose";
       return false;
     }
     const double step = rule_ == FairingRule::kLCurve ? 0.5 : 2.0;

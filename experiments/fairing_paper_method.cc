@@ -52,8 +52,7 @@ Eigen::VectorXd Reference(const Problem& problem) {
   view->rows().Stream(&reader);
   const LongMatrix a = reader.rows.leftCols(view->num_points());
   const LongMatrix q = reader.rows.rightCols(view->dimension());
-  const Points solution =
-      LongMatrix(a.colPivHouseholderQr().solve(q)).cast<double>();
+  const Points solution = LongMatrix(a.colPivHouseholderQr().solve(q)).cast<double>();
   return Eigen::Map<const Eigen::VectorXd>(solution.data(), solution.size());
 }
 
@@ -79,9 +78,9 @@ bool RunMethods(const ExperimentRun& run, ExperimentTables* tables, std::string*
   CsvTable table({"points", "setting", "method", "seconds", "times_cholesky", "digits"});
   double done = 0.0;
   for (const int size : kSizes) {
-    for (const FairingRatio& ratio : {FairingRatio{"1 : 1", 1.0, 1.0},
-                                      FairingRatio{"1 : 0.01", 1.0, 0.01},
-                                      FairingRatio{"1 : 1e-8", 1.0, 1e-8}}) {
+    for (const FairingRatio& ratio :
+         {FairingRatio{"1 : 1", 1.0, 1.0}, FairingRatio{"1 : 0.01", 1.0, 0.01},
+          FairingRatio{"1 : 1e-8", 1.0, 1e-8}}) {
       if (InterruptRequested()) break;
       if (run.progress) run.progress(done++ / 15.0, std::to_string(size) + " points");
       const auto problem = SourceFit(GrowingCurve(size), ratio.alpha, ratio.beta);
@@ -181,16 +180,19 @@ Experiment FairingPaperMethod() {
   experiment.name = "method";
   experiment.title = "A full matrix by column-pivoted QR against the band";
   experiment.text =
-      "A plane curve with 10 to 1000 points about one unit apart. `dense_qr` is the source's method; "
+      "A plane curve with 10 to 1000 points about one unit apart. `dense_qr` is the source's "
+      "method; "
       "`banded_cholesky` solves the same normal equations in their band, `banded_qr` the rows they "
       "are made of. Digits: -log10 of the largest difference of a control point from the answer of "
-      "a QR of the rows in long double, in units of the data's size (up to 300 points; where normal "
+      "a QR of the rows in long double, in units of the data's size (up to 300 points; where "
+      "normal "
       "equations lose all digits `banded_cholesky` says so and hands over to `banded_qr`).";
   experiment.run = &RunMethods;
   experiment.shown = [](const ExperimentTables& tables) { return tables.at(""); };
   experiment.claims = {
       {"P = beta (alpha W + beta M'M)^-1 M'F by column-pivoted QR", "the method",
-       "holds if its control points have 10 digits up to 100 points at the source's ratios and also "
+       "holds if its control points have 10 digits up to 100 points at the source's ratios and "
+       "also "
        "at alpha / beta = 1e8 up to 300 points; in part if the former only",
        &JudgeDigits},
       {"the equations are solved as a full matrix", "the method",

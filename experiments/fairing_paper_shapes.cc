@@ -11,8 +11,8 @@ namespace {
 struct Shape {
   const char* name;
   const char* file;
-  int every;  // of its points
-  int most;   // points
+  int every;    // of its points
+  int most;     // points
   double size;  // its longest side is made so long
 };
 // The source says neither where its data are from nor in what unit they are, on which alpha : beta
@@ -138,11 +138,11 @@ Judgement JudgeSmall(const ExperimentTables& tables) {
 Judgement JudgeShare(const std::vector<double>& values, double high, const std::string& because) {
   Judgement judgement;
   if (values.size() != std::size(kShapes)) return judgement;
-  const auto count = std::count_if(values.begin(), values.end(),
-                                   [high](double value) { return value <= high; });
+  const auto count =
+      std::count_if(values.begin(), values.end(), [high](double value) { return value <= high; });
   judgement.verdict = count == static_cast<std::ptrdiff_t>(values.size()) ? ClaimVerdict::kHolds
                       : count > 0                                         ? ClaimVerdict::kInPart
-                                                  : ClaimVerdict::kDoesNotHold;
+                                  : ClaimVerdict::kDoesNotHold;
   judgement.because = because;
   return judgement;
 }
@@ -172,7 +172,7 @@ ExperimentFigure FigureOf(const Shape& shape) {
           std::string(shape.name) + ": curves (the track seen from above) and curvatures.", 2,
           [&shape](const ExperimentTables& tables) {
             return CurveAndCurvaturePanels(shape.name,
-                                           tables.at("curves").Where("shape", shape.name));
+                                           tables.at("curves").Where("shape", shape.name), true);
           }};
 }
 
@@ -184,7 +184,8 @@ Experiment FairingPaperShapes() {
   experiment.title = "A track in 3-D, an airfoil and a coast";
   experiment.text =
       "A GPS track of a hike (every fourth point, 3-D), an airfoil and 400 points of the coast of "
-      "Great Britain, each made 100 long, by interpolation and with alpha : beta = 0.01 : 1; 1 : 1; "
+      "Great Britain, each made 100 long, by interpolation and with alpha : beta = 0.01 : 1; 1 : "
+      "1; "
       "1 : 0.01. The weights belong to data of that size: alpha's share grows with the cube of the "
       "parameter's step. `largest_move` is the largest distance from the interpolating curve at "
       "equal parameters.";
@@ -197,7 +198,8 @@ Experiment FairingPaperShapes() {
        "falls; in part if one of both",
        &JudgeSmall},
       {"at 1 the curvature is visibly steadier", "the same",
-       "holds if the variation of the curvature falls to half or less for all three; in part for some",
+       "holds if the variation of the curvature falls to half or less for all three; in part for "
+       "some",
        &JudgeEqual},
       {"at 100 tight bends are smoothed", "the same",
        "holds if the largest curvature falls to half or less for all three; in part for some",

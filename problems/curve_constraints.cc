@@ -44,18 +44,14 @@ struct Functional {
   };
   std::string name;
   std::vector<Part> parts;
-  Eigen::RowVectorXd value;         ///< Infinite: that coordinate stays free.
+  Eigen::RowVectorXd value;       ///< Infinite: that coordinate stays free.
   bool value_is_a_point = false;  ///< Else a derivative, which moving the origin does not change.
 };
 
 class Builder {
  public:
   Builder(const CurveFit& fit, const NameSpec& spec, OptionValues options, std::string* error)
-      : fit_(fit),
-        basis_(fit.basis()),
-        spec_(spec),
-        options_(std::move(options)),
-        error_(error) {}
+      : fit_(fit), basis_(fit.basis()), spec_(spec), options_(std::move(options)), error_(error) {}
 
   bool Build() {
     if (spec_.name == "point") return AddAt(0);

@@ -73,8 +73,8 @@ class HuberFit {
     if (!TermRegistry::Global().Resolve(spec, &term, &options, error)) return false;
     if (options.Word("loss") != "none") made.loss = options.Word("loss");
     made.estimated = OptionText(spec, kScaleOption) == kEstimated;
-    made.scale = options.Real(kScaleOption) * setting_.size * kHuberConstant /
-                 TuningConstant(made.loss);
+    made.scale =
+        options.Real(kScaleOption) * setting_.size * kHuberConstant / TuningConstant(made.loss);
     if (!TermRegistry::Global().Resolve(WithoutLoss(spec), &term, &options, error)) return false;
     made.family = term->MakeFamily(setting_, options, error);
     if (made.family == nullptr || made.family->rows() == nullptr) return false;
@@ -127,9 +127,9 @@ class HuberFit {
     const auto view = CurveView::Make(problem_, std::move(sources), nullptr);
     if (view == nullptr) return false;
     const Eigen::VectorXd free = problem_.elimination().FreeVariables(*x);
-    const NearestSolution solution = SolveNearest(
-        view->row_source(),
-        Eigen::Map<const Points>(free.data(), view->num_points(), view->dimension()));
+    const NearestSolution solution =
+        SolveNearest(view->row_source(),
+                     Eigen::Map<const Points>(free.data(), view->num_points(), view->dimension()));
     if (!solution.found) return false;
     *x = problem_.elimination().Expand(Eigen::Map<const Eigen::VectorXd>(
         solution.control_points.data(), solution.control_points.size()));
@@ -150,8 +150,8 @@ bool Freeze(const HuberFit& fit, const Eigen::VectorXd& x, const FitSetting& set
     const double sigma = fit.Sigma(term, x) / setting.size;
     const double scale = TuningConstant(term.loss) * sigma;
     if (!(scale >= kLeast)) {
-      *error = "term " + (*terms)[i].ToString() + ": the median residual is " +
-               NumberText(sigma) + " of the data's size, too small for a scale; give a number "
+      *error = "term " + (*terms)[i].ToString() + ": the median residual is " + NumberText(sigma) +
+               " of the data's size, too small for a scale; give a number "
                "instead of mad";
       return false;
     }

@@ -21,9 +21,8 @@ std::string DenseQrSolver::WhyUnsupported(const Objective& objective) const {
   const std::string why = DirectSolver::WhyUnsupported(objective);
   if (!why.empty()) return why;
   // Also of the constraints' free points: those are fewer.
-  const int dimension = objective.problem().curve_fit() == nullptr
-                            ? 1
-                            : objective.problem().curve_fit()->dimension();
+  const int dimension =
+      objective.problem().curve_fit() == nullptr ? 1 : objective.problem().curve_fit()->dimension();
   if (objective.num_variables() / dimension <= kMostPoints) return "";
   return "dense_qr holds a full matrix, for at most " + std::to_string(kMostPoints) +
          " control points; use banded_qr";

@@ -81,11 +81,11 @@ Status IrlsSolver::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
 }
 
 SolverEntry IrlsEntry() {
-  return {IrlsSolver::ClassInfo(),
-          [](const OptionValues& /*options*/,
-             std::unique_ptr<Solver> base) -> std::unique_ptr<Solver> {
-            return std::make_unique<IrlsSolver>(std::move(base));
-          }};
+  return {
+      IrlsSolver::ClassInfo(),
+      [](const OptionValues& /*options*/, std::unique_ptr<Solver> base) -> std::unique_ptr<Solver> {
+        return std::make_unique<IrlsSolver>(std::move(base));
+      }};
 }
 
 }  // namespace batten

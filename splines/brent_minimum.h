@@ -28,8 +28,8 @@ std::pair<double, double> BrentMinimum(const Function& f, double low, double mid
     double denominator = 2.0 * (q - r);
     if (denominator > 0.0) numerator = -numerator;
     denominator = std::abs(denominator);
-    const bool is_inside = numerator > denominator * (low - best) &&
-                           numerator < denominator * (high - best);
+    const bool is_inside =
+        numerator > denominator * (low - best) && numerator < denominator * (high - best);
     const bool shrinks = std::abs(numerator) < std::abs(0.5 * denominator * step_before);
     step_before = step;
     if (is_inside && shrinks && std::abs(step_before) > tolerance) {
@@ -42,7 +42,8 @@ std::pair<double, double> BrentMinimum(const Function& f, double low, double mid
       step_before = (best < centre ? high : low) - best;
       step = kGolden * step_before;
     }
-    const double place = best + (std::abs(step) >= tolerance ? step : std::copysign(tolerance, step));
+    const double place =
+        best + (std::abs(step) >= tolerance ? step : std::copysign(tolerance, step));
     const double f_place = f(place);
     if (f_place <= f_best) {
       (place < best ? high : low) = best;

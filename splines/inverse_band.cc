@@ -66,8 +66,8 @@ class InverseRows {
       qr_.CopyRow(num_band_ + i, window.data(), tail.data(), right.data());
       for (int k = i; k < num_tail_; ++k) r(i, k) = tail[static_cast<std::size_t>(k)];
     }
-    const Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(
-        Eigen::MatrixXd::Identity(num_tail_, num_tail_));
+    const Eigen::MatrixXd inverse =
+        r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(num_tail_, num_tail_));
     tail_ = inverse * inverse.transpose();
   }
 
@@ -108,8 +108,8 @@ double TraceOfInverseTimes(const BandedQr& qr, const NormalBand& normal) {
   }
   for (int j = num_band - 1; j >= 0; --j) {
     rows.Next(j);
-    add_places(
-        j, [&](int k) { return k < num_band ? rows.near(k - j) : rows.beside(k - num_band); });
+    add_places(j,
+               [&](int k) { return k < num_band ? rows.near(k - j) : rows.beside(k - num_band); });
   }
   return trace;
 }

@@ -19,9 +19,8 @@ class Scaler : public RowConsumer {
 
   void Consume(const RowBlock& block) override {
     for (int k = 0; k < columns_; ++k) {
-      const double* const from = k < width_
-                                     ? block.coefficients + k * block.stride
-                                     : block.right_hand_sides + (k - width_) * block.stride;
+      const double* const from = k < width_ ? block.coefficients + k * block.stride
+                                            : block.right_hand_sides + (k - width_) * block.stride;
       double* const to = storage_.data() + k * block.stride;
       for (int i = 0; i < block.num_rows; ++i) to[i] = from[i] * factors_[next_row_ + i];
       for (int i = block.num_rows; i < block.stride; ++i) to[i] = 0.0;

@@ -35,9 +35,9 @@ class SmoothingFamily {
  private:
   BandedRows data_;
   BandedRows fairing_;
-  BandedRows all_;               // of both
+  BandedRows all_;                // of both
   std::vector<char> is_fairing_;  // which of them
-  NormalBand normal_;            // A'A
+  NormalBand normal_;             // A'A
   double trace_of_fairing_ = 0.0;
   int num_data_ = 0;
 };

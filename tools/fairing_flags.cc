@@ -29,8 +29,8 @@ namespace {
 /// Terms that have units; those that say theirs keep them.
 void ApplyUnits(FitSpec* spec) {
   for (NameSpec& term : spec->terms) {
-    const bool has_units = term.name == "fairing" || term.name == "end_tangent" ||
-                           term.name == "end_curvature";
+    const bool has_units =
+        term.name == "fairing" || term.name == "end_tangent" || term.name == "end_curvature";
     const bool says = std::any_of(term.options.begin(), term.options.end(),
                                   [](const auto& option) { return option.first == "units"; });
     if (has_units && !says) term.options.emplace_back("units", FLAGS_fairing_units);

@@ -72,8 +72,7 @@ TEST(FairingAndScipy, GiveTheSameSmoothingSplineAtTheSameWeight) {
                                                 : "0.001";
       const std::vector<double>& theirs = rows.at("weight " + text);
       const auto problem = function.Make(weight);
-      const BsplineCurve curve =
-          problem->curve_fit()->Curve(RunSolver(*problem, "banded_qr").x);
+      const BsplineCurve curve = problem->curve_fit()->Curve(RunSolver(*problem, "banded_qr").x);
       Eigen::VectorXd middles(static_cast<Eigen::Index>(theirs.size()));
       for (Eigen::Index i = 0; i < middles.size(); ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -102,8 +101,9 @@ double DenseGcv(const FunctionFit& function, double weight) {
   const auto m = static_cast<double>(function.data.points.rows());
   const double trace = static_cast<double>(ldlt.solve(n).trace());
   Eigen::VectorXd residuals;
-  EXPECT_EQ(problem->terms()[0].family->Residuals(Eigen::Map<const Eigen::VectorXd>(
-                p.data(), p.size()), &residuals), Status::kOk);
+  EXPECT_EQ(problem->terms()[0].family->Residuals(
+                Eigen::Map<const Eigen::VectorXd>(p.data(), p.size()), &residuals),
+            Status::kOk);
   return residuals.squaredNorm() / m / std::pow(1.0 - trace / m, 2);
 }
 
@@ -112,8 +112,8 @@ TEST(FairingAndScipy, GcvFindsNoWorseAWeight) {
     FunctionFit function(rows);
     FairingChoice choice;
     std::string error;
-    ASSERT_TRUE(ChooseFairingWeight(function.data, FairingRule::kGcv, 0.0, &function.spec, &choice,
-                                    &error))
+    ASSERT_TRUE(
+        ChooseFairingWeight(function.data, FairingRule::kGcv, 0.0, &function.spec, &choice, &error))
         << error;
     const double ours = DenseGcv(function, choice.weight);
     EXPECT_LE(ours, DenseGcv(function, rows.at("gcv").front()) * (1.0 + 1e-8)) << name;
@@ -184,8 +184,7 @@ TEST(FairingChoice, ByGcvIsNearTheBestPossibleWeight) {
     FairingChoice choice;
     FitSpec spec = curve.spec;
     std::string error;
-    ASSERT_TRUE(
-        ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error))
+    ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error))
         << error;
     // The best on a grid of tenths of decades: the error is flat there.
     double best = std::numeric_limits<double>::infinity();
@@ -226,8 +225,8 @@ TEST(FairingChoice, ByTheLCurveLiesBetweenNoiseAndBend) {
   NoisyCurve curve(8);
   FairingChoice choice;
   std::string error;
-  ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice,
-                                  &error))
+  ASSERT_TRUE(
+      ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice, &error))
       << error;
   // Half as good as no fairing at all and as a line would be far worse than this.
   EXPECT_LE(curve.Error(choice.weight), 0.9 * curve.Error(1e-14));
@@ -242,8 +241,7 @@ TEST(FairingChoice, RefusesWhatItCannotJudge) {
     std::string error;
     EXPECT_TRUE(ParseNameSpecList(terms, &spec.terms, &error));
     spec.parameter_kind = kind;
-    EXPECT_FALSE(
-        ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error));
+    EXPECT_FALSE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error));
     return error;
   };
   EXPECT_EQ(why_not("interpolation/loss=huber/loss_scale=0.1", ParameterKind::kFixed),

@@ -1,8 +1,7 @@
-#include "problems/curve_constraints.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "problems/curve_constraints.h"
 #include "splines/basis_functions.h"
 #include "tests/solvers/contract_cases.h"
 #include "tests/splines/example_splines.h"
@@ -157,28 +156,27 @@ TEST(CurveConstraints, ClampedEndsHaveBesselsTangents) {
   const Eigen::RowVectorXd first = (q.row(1) - q.row(0)) / (t[1] - t[0]);
   const Eigen::RowVectorXd second = (q.row(2) - q.row(1)) / (t[2] - t[1]);
   // Through three points: a mean of the two slopes, weighted by the other step.
-  const Eigen::RowVectorXd bessel =
-      first - (second - first) * (t[1] - t[0]) / (t[2] - t[0]);
+  const Eigen::RowVectorXd bessel = first - (second - first) * (t[1] - t[0]) / (t[2] - t[0]);
   EXPECT_LE((CurveAt(*problem, x, 0.0, 1) - bessel).norm(), 1e-10 * bessel.norm());
 }
 
 std::string WhyNot(const std::string& constraints, bool closed = false) {
   std::string error;
-  const auto problem = MakeFitProblem(
-      OpenData(), WithConstraints(MakeSpec(3, closed, 14), constraints), &error);
+  const auto problem =
+      MakeFitProblem(OpenData(), WithConstraints(MakeSpec(3, closed, 14), constraints), &error);
   return problem == nullptr ? error : "";
 }
 
 TEST(CurveConstraints, ThatContradictEachOtherAreNamed) {
-  EXPECT_EQ(WhyNot("point/t=0.4/x=1/y=2,point/t=0.4/x=1.5"),
-            "linear constraints \"point/t=0.4/x=1/y=2 (x)\" and \"point/t=0.4/x=1.5 (x)\" contradict "
-            "each other");
+  EXPECT_EQ(
+      WhyNot("point/t=0.4/x=1/y=2,point/t=0.4/x=1.5"),
+      "linear constraints \"point/t=0.4/x=1/y=2 (x)\" and \"point/t=0.4/x=1.5 (x)\" contradict "
+      "each other");
   EXPECT_EQ(WhyNot("point/t=0.4/x=1/y=2,point/t=0.4/x=1"), "") << "said twice";
 }
 
 TEST(CurveConstraints, ThatTheCurveCannotMeetAreRefused) {
-  EXPECT_EQ(WhyNot("point/t=1.5/x=1"),
-            "constraint point/t=1.5/x=1 has t = 1.5; allowed: 0 to 1");
+  EXPECT_EQ(WhyNot("point/t=1.5/x=1"), "constraint point/t=1.5/x=1 has t = 1.5; allowed: 0 to 1");
   EXPECT_EQ(WhyNot("point/x=1"), "constraint point/x=1 has no t; allowed: 0 to 1");
   EXPECT_EQ(WhyNot("point/t=0.5"),
             "constraint point/t=0.5 holds nothing; give at least one of x, y, z, w");

@@ -25,9 +25,8 @@ TEST(InverseBand, TraceIsThatOfTheDenseMatrices) {
     const NormalBand normal = NormalBand::FromRows(others);
     const Eigen::MatrixXd n = normal.ToDense();
     // The dense inverse is off by its condition; sums of n width products.
-    const double tolerance = 64 * c.num_columns * c.width * kEpsilon *
-                             (a.transpose() * a).norm() * inverse.norm() * inverse.norm() *
-                             n.norm();
+    const double tolerance = 64 * c.num_columns * c.width * kEpsilon * (a.transpose() * a).norm() *
+                             inverse.norm() * inverse.norm() * n.norm();
     EXPECT_NEAR(TraceOfInverseTimes(qr, normal), (inverse * n).trace(), tolerance);
   }
 }
