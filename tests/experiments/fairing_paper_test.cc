@@ -45,8 +45,7 @@ TEST(FairingPaper, JudgesTheBump) {
 /// Alike for all shapes but the coast.
 ExperimentTables ShapeTables(const std::string& setting, double move, double variation,
                              double curvature, double coast_factor) {
-  CsvTable table(
-      {"shape", "setting", "largest_move", "curvature_variation", "max_curvature"});
+  CsvTable table({"shape", "setting", "largest_move", "curvature_variation", "max_curvature"});
   for (const char* shape : {"track", "airfoil", "coast"}) {
     const double factor = std::string(shape) == "coast" ? coast_factor : 1.0;
     for (const FairingRatio& ratio : kFairingRatios) {
@@ -73,8 +72,9 @@ TEST(FairingPaper, JudgesWhatTheWeightsDo) {
   EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 1), 2), kHolds);
   EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 2), 2), kInPart);
   EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 0.01", 1, 1, 0.6, 1), 2), kDoesNotHold);
-  EXPECT_EQ(Verdict(shapes, {{"", CsvTable({"shape", "setting", "largest_move",
-                                            "curvature_variation", "max_curvature"})}},
+  EXPECT_EQ(Verdict(shapes,
+                    {{"", CsvTable({"shape", "setting", "largest_move", "curvature_variation",
+                                    "max_curvature"})}},
                     1),
             kUndecided);
 }
@@ -87,9 +87,10 @@ ExperimentTables MethodTables(double digits, double heavy_digits, double seconds
         const bool dense = std::string(method) == "dense_qr";
         const bool heavy = std::string(setting) == "1 : 1e-8";
         table.AddRow({points, setting, method, NumberText(dense ? seconds : 1.0), "1",
-                      std::string(points) == "1000"
-                          ? ""
-                          : NumberText(!dense ? 14.0 : heavy ? heavy_digits : digits)});
+                      std::string(points) == "1000" ? ""
+                                                    : NumberText(!dense  ? 14.0
+                                                                 : heavy ? heavy_digits
+                                                                         : digits)});
       }
     }
   }
@@ -137,8 +138,7 @@ Points SourceFormula(const Points& points, double alpha, double beta) {
   a(m, 0) = a(m + 1, n - 2) = -1.0L;
   a(m, 1) = a(m + 1, n - 1) = 1.0L;
   f.row(m) = (bessel(0, 1, 2) * (t[1] - t[0]) / 3.0).cast<long double>();
-  f.row(m + 1) =
-      (bessel(m - 1, m - 2, m - 3) * (t[m - 1] - t[m - 2]) / 3.0).cast<long double>();
+  f.row(m + 1) = (bessel(m - 1, m - 2, m - 3) * (t[m - 1] - t[m - 2]) / 3.0).cast<long double>();
   LongMatrix w = LongMatrix::Zero(n, n);
   for (Eigen::Index s = 3; s + 1 < m + 3; ++s) {
     const long double length = static_cast<long double>(u[s + 1]) - u[s];
@@ -177,8 +177,7 @@ TEST(FairingPaper, ControlPointsAreTheSourcesFormula) {
         const Points expected = SourceFormula(points, ratio.alpha, ratio.beta);
         for (const char* solver : {"banded_qr", "dense_qr"}) {
           const Points ours = ControlPointsOf(*problem, RunSolver(*problem, solver));
-          EXPECT_LE((ours - expected).cwiseAbs().maxCoeff(),
-                    1e-10 * problem->curve_fit()->size())
+          EXPECT_LE((ours - expected).cwiseAbs().maxCoeff(), 1e-10 * problem->curve_fit()->size())
               << solver << " " << ratio.name << " m = " << m;
         }
       }
