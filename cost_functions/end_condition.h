@@ -15,6 +15,7 @@ struct EndResidual {
   static TermInfo Info();
   static constexpr bool kAffine = true;
   static constexpr int kDerivatives = kDerivative;
+  static constexpr bool kOnlyHighestDerivative = true;
   static constexpr int NumResiduals(int dimension) { return dimension; }
 
   explicit EndResidual(std::shared_ptr<const Sites> ends) : ends_(std::move(ends)) {}

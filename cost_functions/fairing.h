@@ -17,6 +17,7 @@ struct FairingResidual {
   static TermInfo Info();
   static constexpr bool kAffine = true;
   static constexpr int kDerivatives = kDerivative;
+  static constexpr bool kOnlyHighestDerivative = true;
   static constexpr int NumResiduals(int dimension) { return dimension; }
 
   explicit FairingResidual(const OptionValues& options)

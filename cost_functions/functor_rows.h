@@ -4,14 +4,24 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "cost_functions/affine_form.h"
 #include "cost_functions/fit_setting.h"
 #include "cost_functions/pack.h"
 #include "cost_functions/site.h"
+#include "splines/basis_derivative.h"
 #include "splines/basis_functions.h"
 
 namespace batten {
+
+/// Whether a functor says (kOnlyHighestDerivative) that of its site it asks for the derivative of
+/// order kDerivatives and no other.
+template <typename Functor, typename = void>
+struct AsksForOneDerivative : std::false_type {};
+template <typename Functor>
+struct AsksForOneDerivative<Functor, std::enable_if_t<Functor::kOnlyHighestDerivative>>
+    : std::true_type {};
 
 /// The rows of an affine residual functor that are alike for all coordinates, read out of the
 /// functor, kRowPack sites at a time; P and D as in FunctorKernel.
@@ -25,13 +35,21 @@ class FunctorRows {
   void Stream(double root_factor, RowConsumer* consumer) const {
     Form variables[kOrderStorage];
     const Form* points[kOrderStorage];
+    PlainForm few_variables[kOrderStorage];
+    const PlainForm* few_points[kOrderStorage];
     for (int j = 0; j < order(); ++j) {
       variables[j] = Form::Variable(j);
       points[j] = &variables[j];
+      few_variables[j] = PlainForm::Variable(j);
+      few_points[j] = &few_variables[j];
     }
     // Right-hand sides behind the coefficients: consumers have their fastest loops for that.
     alignas(32) double rows[(kOrderStorage + kDimensionStorage) * kMaxRowsPerBlock];
     for (const Sites::Group& group : sites_.groups) {
+      if (group.end - group.begin < kRowPack) {
+        consumer->Consume(FillFew(group, root_factor, few_points, rows));
+        continue;
+      }
       const SpanBasis<P, Pack> span_basis(basis_.degree(), basis_.knots().data(), group.span);
       for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
         RowBlock block;
@@ -52,9 +70,55 @@ class FunctorRows {
   static constexpr int kOrderStorage = kStatic ? P + 1 : kMaxOrder;
   static constexpr int kDimensionStorage = kStatic ? D : kMaxDimension;
   using Form = AffineForm<Pack, kOrderStorage>;
+  using PlainForm = AffineForm<double, kOrderStorage>;
 
   int order() const { return kStatic ? P + 1 : basis_.order(); }
   int dimension() const { return kStatic ? D : setting_.dimension; }
+
+  /// The block of a span with fewer sites than a pack has, one after the other in plain numbers: a
+  /// smoothing spline has one or two in each of its spans, for which packs cost twice as much.
+  __attribute__((flatten)) RowBlock FillFew(const Sites::Group& group, double root_factor,
+                                            const PlainForm* const* points, double* rows) const {
+    RowBlock block;
+    block.first_column = basis_.ControlPointIndex(group.span - basis_.degree());
+    block.num_rows = group.end - group.begin;
+    block.stride = kRowPack;
+    block.coefficients = rows;
+    block.right_hand_sides = rows + order() * kRowPack;
+    std::fill_n(rows, (order() + dimension()) * kRowPack, 0.0);
+    Site<double, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
+    site.set_variables(points);
+    for (int i = 0; i < block.num_rows; ++i) {
+      const int item = sites_.item(group.begin + i);
+      const double t = sites_.parameters[item];
+      const double* const u = basis_.knots().data();
+      if constexpr (Functor::kDerivatives > 0 && AsksForOneDerivative<Functor>::value) {
+        EvaluateBasisDerivative<P, Functor::kDerivatives>(
+            basis_.degree(), u, group.span, t,
+            site.mutable_basis() + Functor::kDerivatives * order());
+      } else {
+        EvaluateBasisDerivatives<P>(basis_.degree(), u, group.span, t, Functor::kDerivatives,
+                                    site.mutable_basis());
+      }
+      site.set_root_weight(sites_.weights == nullptr ? 1.0 : std::sqrt(sites_.weights[item]));
+      PlainForm result;
+      for (int c = 0; c < dimension(); ++c) {
+        double point = 0.0;
+        if (sites_.points != nullptr) {
+          const double center = sites_.points_are_displacements ? 0.0 : setting_.center[c];
+          point = (sites_.points[static_cast<std::ptrdiff_t>(item) * dimension() + c] - center) *
+                  setting_.scale;
+        }
+        site.mutable_point()[0] = point;
+        functor_(site, points, &result);
+        rows[(order() + c) * kRowPack + i] = -result.constant * root_factor;
+      }
+      for (int j = 0; j < order(); ++j) {
+        rows[j * kRowPack + i] = result.coefficient[j] * root_factor;
+      }
+    }
+    return block;
+  }
 
   /// Products with weights and factors that are 1 are left out when compiling, not when running.
   void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points,
@@ -117,6 +181,10 @@ class FunctorRows {
     const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
     if constexpr (Functor::kDerivatives == 0) {
       span_basis.Evaluate(t, site.mutable_basis());
+    } else if constexpr (AsksForOneDerivative<Functor>::value) {
+      EvaluateBasisDerivative<P, Functor::kDerivatives>(
+          basis_.degree(), basis_.knots().data(), span, t,
+          site.mutable_basis() + Functor::kDerivatives * order());
     } else {
       EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span, t,
                                   Functor::kDerivatives, site.mutable_basis());

@@ -90,20 +90,24 @@ void AddCurveRows(const std::vector<std::string>& first, const Problem& problem,
   }
 }
 
-std::vector<PlotPanel> CurveAndCurvaturePanels(const std::string& title, const CsvTable& rows) {
+std::vector<PlotPanel> CurveAndCurvaturePanels(const std::string& title, const CsvTable& rows,
+                                               bool log_size) {
   PlotPanel curves, curvature;
   curves.title = title;
   curves.equal_scale = true;
   curvature.title = "curvature";
   curvature.x_label = "arc length";
-  curvature.y_label = "kappa";
+  curvature.y_label = log_size ? "size of kappa" : "kappa";
+  curvature.log_y = log_size;
   int color = 0;
   for (const std::string& setting : rows.Distinct("setting")) {
     const CsvTable part = rows.Where("setting", setting);
     curves.series.push_back(
         {setting, part.Numbers("x"), part.Numbers("y"), PlotSeries::Style::kLine, color});
+    std::vector<double> kappa = part.Numbers("kappa");
+    for (double& value : kappa) value = log_size ? std::abs(value) : value;
     curvature.series.push_back(
-        {setting, part.Numbers("s"), part.Numbers("kappa"), PlotSeries::Style::kLine, color++});
+        {setting, part.Numbers("s"), std::move(kappa), PlotSeries::Style::kLine, color++});
   }
   return {curves, curvature};
 }

@@ -1,6 +1,7 @@
 #ifndef BATTEN_EXPERIMENTS_FAIRING_PAPER_H_
 #define BATTEN_EXPERIMENTS_FAIRING_PAPER_H_
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,10 @@ std::vector<std::string> FairnessCells(const Problem& problem, const Eigen::Vect
 std::vector<std::string> CurveColumns();
 void AddCurveRows(const std::vector<std::string>& first, const Problem& problem,
                   const Eigen::VectorXd& x, int most, CsvTable* table);
-/// Panels of the curves and of the curvatures of `rows` (CurveColumns()), by setting.
-std::vector<PlotPanel> CurveAndCurvaturePanels(const std::string& title, const CsvTable& rows);
+/// Panels of the curves and of the curvatures of `rows` (CurveColumns()), by setting. `log_size`:
+/// |kappa| on a logarithmic axis, where single sharp bends would hide all others.
+std::vector<PlotPanel> CurveAndCurvaturePanels(const std::string& title, const CsvTable& rows,
+                                               bool log_size);
 
 }  // namespace batten
 

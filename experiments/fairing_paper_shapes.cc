@@ -172,7 +172,7 @@ ExperimentFigure FigureOf(const Shape& shape) {
           std::string(shape.name) + ": curves (the track seen from above) and curvatures.", 2,
           [&shape](const ExperimentTables& tables) {
             return CurveAndCurvaturePanels(shape.name,
-                                           tables.at("curves").Where("shape", shape.name));
+                                           tables.at("curves").Where("shape", shape.name), true);
           }};
 }
 

@@ -18,7 +18,7 @@ SolverInfo DenseQrSolver::ClassInfo() {
 }
 
 std::string DenseQrSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = DirectSolver::WhyUnsupported(objective);
+  std::string why = DirectSolver::WhyUnsupported(objective);
   if (!why.empty()) return why;
   // Also of the constraints' free points: those are fewer.
   const int dimension =

@@ -20,7 +20,7 @@ class DirectSolver : public Solver {
  private:
   Outcome DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) final {
     if (context->Iterate(*x) != Status::kOk) return {context->stop_reason(), ""};
-    const Outcome outcome = SolveRows(*objective->curve_view(), objective->problem(), context, x);
+    Outcome outcome = SolveRows(*objective->curve_view(), objective->problem(), context, x);
     if (outcome.reason == StopReason::kSolved) context->Iterate(*x);
     return outcome;
   }

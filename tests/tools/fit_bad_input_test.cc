@@ -168,5 +168,33 @@ TEST(FitCommand, KeepsAMessageOnOneLineWhateverTheFileIsCalled) {
                 {"no\\x0asuch\\x09file"});
 }
 
+constexpr char kSixPoints[] = "x,y\n0,0\n1,1\n2,0\n3,3\n4,1\n5,2\n";
+
+TEST(FitCommand, RefusesConstraintsThatItCannotMeet) {
+  const auto refuse = [](const std::string& constraints, const std::vector<std::string>& parts) {
+    ExpectRefused(FitText(kSixPoints, {"--constraints=" + constraints}), parts);
+  };
+  refuse("pont/t=0/x=1", {"--constraints: unknown constraint \"pont\"", "did you mean point"});
+  refuse("point/t=0/u=1", {"--constraints: point has no option \"u\"", "known: "});
+  refuse("point/t=2/x=1", {"has t = 2", "allowed: 0 to 1"});
+  refuse("point/t=0/x=1,ends", {"point/t=0/x=1 (x)", "ends at the begin (x)", "contradict"});
+}
+
+TEST(FitCommand, RefusesFairingThatItCannotChoose) {
+  const auto refuse = [](const std::vector<std::string>& flags,
+                         const std::vector<std::string>& parts) {
+    ExpectRefused(FitText(kSixPoints, flags), parts);
+  };
+  refuse({"--fairing=best"}, {"--fairing: found \"best\"", "allowed: gcv, discrepancy, lcurve"});
+  refuse({"--fairing=discrepancy"}, {"--fairing: discrepancy needs --noise"});
+  refuse({"--noise=0.1"}, {"--noise: found 0.1", "allowed: nothing, without"});
+  refuse({"--fairing=gcv", "--terms=interpolation/loss=huber"},
+         {"--fairing=gcv cannot judge a loss"});
+  refuse({"--fairing=gcv", "--parameter_kind=free"}, {"--fairing=gcv cannot judge free"});
+  refuse({"--terms=fairing/derivative=4"}, {"--terms: ", "derivative", "1 to 3"});
+  refuse({"--terms=interpolation,fairing", "--span_weights=1,2"},
+         {"found 2 weights of spans", "the curve has 1 spans"});
+}
+
 }  // namespace
 }  // namespace batten

@@ -292,5 +292,36 @@ TEST(FitCommand, PrintsNoNumberThatIsNone) {
   EXPECT_THAT(ended.out, Not(HasSubstr("inf ")));
 }
 
+TEST(FitCommand, ChoosesTheFairingWeightAndDrawsHow) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"fit", kRhino, "--closed", "--control_points=80", "--fairing=gcv",
+                                 "--solver=banded_qr", "--out=" + (folder / "fit.json"),
+                                 "--fairing_figure=" + (folder / "choice.svg"),
+                                 "--curvature_figure=" + (folder / "curvature.svg")});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(folder.Names(),
+              ::testing::ElementsAre("choice.dat", "choice.gp", "choice.svg", "curvature.dat",
+                                     "curvature.gp", "curvature.svg", "fit.json"));
+  const json fit = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_THAT(fit["terms"][1]["name"].get<std::string>(), HasSubstr("fairing/weight="));
+  EXPECT_GT(fit["fairness"]["bending_energy"].get<double>(), 0.0);
+  EXPECT_GT(fit["fairness"]["num_inflections"].get<int>(), 0);
+}
+
+TEST(FitCommand, HoldsConstraintsAndWeighsSpans) {
+  const json held = Fit({kRhino, "--control_points=20", "--solver=banded_qr",
+                         "--constraints=point/t=0/x=100/y=50,natural"});
+  EXPECT_NEAR(held["spline"]["control_points"][0][0].get<double>(), 100.0, 1e-9);
+  EXPECT_NEAR(held["spline"]["control_points"][0][1].get<double>(), 50.0, 1e-9);
+  // Twice the weight in every span is twice the weight of the term.
+  const json spans = Fit({"-", "--control_points=6", "--solver=banded_qr",
+                          "--terms=interpolation,fairing/weight=1e-3", "--span_weights=2,2,2"},
+                         "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
+  const json term = Fit({"-", "--control_points=6", "--solver=banded_qr",
+                         "--terms=interpolation,fairing/weight=2e-3"},
+                        "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
+  EXPECT_NEAR(spans["energy"].get<double>(), term["energy"].get<double>(), 1e-13);
+}
+
 }  // namespace
 }  // namespace batten

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Times the fairing fits of build/batten beside SciPy's make_smoothing_spline and the dense method.
+
+    python3 benchmarks/fairing_peers.py [--batten=build/batten] [--rounds=3] [--sizes=10000,1000000]
+
+Processor seconds of the solvers alone, one after the other in each round; a ratio is formed within
+its round, and the median of the rounds is shown with the lowest and the highest. Both sides solve
+the same problem: one cubic with a knot at every place, one given weight, two coordinates (SciPy
+coordinate by coordinate). Their curves are compared first: no times without the same answer.
+"""
+import argparse
+import json
+import math
+import os
+import statistics
+import subprocess
+import tempfile
+import time
+
+import numpy
+from scipy.interpolate import BSpline, make_smoothing_spline
+
+
+def make_data(n):
+    """Places in [0, 1] and two noisy waves, from a linear congruence."""
+    state = 12345
+    numbers = []
+    for _ in range(3 * n):
+        state = (6364136223846793005 * state + 1442695040888963407) % 2**64
+        numbers.append((state >> 11) / 2.0**53)
+    steps = 0.5 + numpy.array(numbers[: n - 1])
+    t = numpy.concatenate([[0.0], numpy.cumsum(steps)]) / steps.sum()
+    t[-1] = 1.0
+    x = numpy.sin(9 * t) + 0.1 * numpy.array(numbers[n : 2 * n])
+    y = numpy.cos(7 * t) + 0.1 * numpy.array(numbers[2 * n :])
+    return t, x, y
+
+
+def write_data(folder, t, x, y):
+    with open(os.path.join(folder, "points.csv"), "w") as file:
+        file.write("x,y,t\n")
+        file.writelines(f"{a!r},{b!r},{c!r}\n" for a, b, c in zip(x.tolist(), y.tolist(), t.tolist()))
+    with open(os.path.join(folder, "knots.txt"), "w") as file:
+        knots = [0.0] * 3 + t.tolist() + [1.0] * 3
+        file.write("\n".join(repr(u) for u in knots) + "\n")
+
+
+def fit(batten, folder, solver, weight):
+    out = os.path.join(folder, "fit.json")
+    subprocess.run(
+        [batten, "fit", os.path.join(folder, "points.csv"), "--parameters=given",
+         "--knots=" + os.path.join(folder, "knots.txt"), "--quiet", "--solver=" + solver,
+         f"--terms=interpolation,fairing/weight={weight!r}", "--out=" + out],
+        check=True, stdout=subprocess.DEVNULL)
+    with open(out) as file:
+        return json.load(file)
+
+
+def check_curve(result, theirs, t):
+    spline = result["spline"]
+    ours = BSpline(numpy.array(spline["knots"]), numpy.array(spline["control_points"]), 3)
+    places = numpy.linspace(t[0], t[-1], 2001)
+    worst = max(numpy.abs(ours(places)[:, c] - theirs[c](places)).max() for c in (0, 1))
+    if worst > 1e-6:
+        raise SystemExit(f"the curves differ by {worst}: no times")
+
+
+def shown(name, ratios, wanted):
+    text = f"{name}: {statistics.median(ratios):.1f} times ({min(ratios):.1f} to {max(ratios):.1f})"
+    print(f"{text}, wanted {wanted}", flush=True)
+
+
+def compare_with_scipy(batten, n, rounds, weight):
+    t, x, y = make_data(n)
+    ratios = {"banded_qr": [], "banded_cholesky": []}
+    with tempfile.TemporaryDirectory() as folder:
+        write_data(folder, t, x, y)
+        for _ in range(rounds):
+            begin = time.process_time()
+            theirs = [make_smoothing_spline(t, values, lam=weight) for values in (x, y)]
+            seconds = time.process_time() - begin
+            for solver, list_of_ratios in ratios.items():
+                result = fit(batten, folder, solver, weight)
+                if solver == "banded_qr":
+                    check_curve(result, theirs, t)
+                list_of_ratios.append(seconds / result["cpu_seconds"])
+    shown(f"{n} points, banded_qr against make_smoothing_spline", ratios["banded_qr"], "20")
+    shown(f"{n} points, banded_cholesky against it", ratios["banded_cholesky"], "100")
+
+
+def compare_with_dense(batten, rounds):
+    t, x, y = make_data(1000)
+    ratios = []
+    with tempfile.TemporaryDirectory() as folder:
+        write_data(folder, t, x, y)
+        for _ in range(rounds):
+            dense = fit(batten, folder, "dense_qr", 1e-8)["cpu_seconds"]
+            ratios.append(dense / fit(batten, folder, "banded_cholesky", 1e-8)["cpu_seconds"])
+    shown("1000 points, banded_cholesky against dense_qr", ratios, "1000")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--batten", default="build/batten")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--sizes", default="10000,1000000")
+    arguments = parser.parse_args()
+    load = os.getloadavg()[0]
+    print(f"load average {load:.1f}" + (": **busy**" if load > math.ceil(0.5) else ""))
+    compare_with_dense(arguments.batten, arguments.rounds)
+    for size in map(int, arguments.sizes.split(",")):
+        # The weight at which curves of this size keep some hundred bends, at any number of points.
+        compare_with_scipy(arguments.batten, size, arguments.rounds, 1e-8 * size / 10000.0)
+
+
+main()
