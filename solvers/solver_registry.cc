@@ -5,6 +5,7 @@
 #include "solvers/anderson.h"
 #include "solvers/banded_cholesky.h"
 #include "solvers/banded_qr.h"
+#include "solvers/best_of.h"
 #include "solvers/ceres_lbfgs.h"
 #include "solvers/ceres_lm.h"
 #include "solvers/cg.h"
@@ -56,6 +57,7 @@ SolverEntry (*const kBuiltInSolvers[])() = {
     &MakeSolverEntry<ChebyshevLspiaSolver>,
     &MakeSolverEntry<RandomisedPiaSolver>,
     &AndersonEntry,
+    &BestOfEntry,
     &MakeSolverEntry<CgSolver>,
     &MakeSolverEntry<LbfgsSolver>,
     &MakeSolverEntry<CeresLbfgsSolver>,

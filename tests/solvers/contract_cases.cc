@@ -9,7 +9,10 @@
 namespace batten {
 
 std::string FreeName(const std::string& registered) {
-  return registered == "anderson" ? "anderson:pdm" : SolverRegistry::Global().UsualName(registered);
+  if (registered == "anderson") return "anderson:pdm";
+  // Small enough to be stopped at each of its evaluations.
+  if (registered == "best_of") return "best_of/starts=2/steps=4:foot_newton";
+  return SolverRegistry::Global().UsualName(registered);
 }
 
 std::unique_ptr<Solver> MakeSolver(const std::string& name_and_options) {
@@ -39,7 +42,9 @@ bool HasItsOwnLimit(const SolverTrial& trial) {
 }
 
 void ExpectOneSentenceWithAWayOut(const std::string& sentence, const std::string& solver) {
-  EXPECT_EQ(sentence.rfind(solver, 0), 0U) << sentence;
+  // Of what wraps a solver the sentence has the names alone.
+  const std::string name = solver.substr(0, solver.find_first_of("/:"));
+  EXPECT_EQ(sentence.rfind(name, 0), 0U) << sentence;
   EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
   EXPECT_EQ(sentence.find(". "), std::string::npos) << sentence;
   EXPECT_NE(sentence.back(), '.') << sentence;

@@ -1,0 +1,43 @@
+#include <gtest/gtest.h>
+
+#include "tests/solvers/contract_cases.h"
+
+namespace batten {
+namespace {
+
+TEST(BestOf, EndsLowerTheMoreStartsItHas) {
+  const auto problem = MakeFileFit("animals/rhino_100.csv", MakeFreeSpec(3, true, 12));
+  double before = std::numeric_limits<double>::infinity();
+  for (const int starts : {1, 5, 25}) {
+    SolverTrial trial(*problem, "best_of/starts=" + std::to_string(starts) + ":foot_newton");
+    const double energy = trial.context.Energy(trial.x);
+    // The same starts and more; the polishing of another basin may gain less than that of the last.
+    EXPECT_LE(energy, before * (1.0 + 1e-3)) << starts;
+    EXPECT_EQ(trial.context.notes().count("best start"), 1U);
+    before = energy;
+  }
+  SolverTrial once(*problem, "foot_newton");
+  EXPECT_LT(before, 0.8 * once.context.Energy(once.x));
+}
+
+TEST(BestOf, WithOneStartEndsWhereItsBaseDoes) {
+  for (const char* base : {"newton", "lbfgs", "pdm", "anderson:pdm"}) {
+    const auto problem =
+        MakeFit(WithoutWeights(MakeNoisyBean(60, 2, 321)), MakeFreeSpec(3, true, 12));
+    SolverTrial alone(*problem, base, {3000});
+    SolverTrial wrapped(*problem, std::string("best_of/starts=1:") + base, {3000});
+    ASSERT_TRUE(IsSuccess(alone.outcome.reason)) << base;
+    EXPECT_TRUE(IsSuccess(wrapped.outcome.reason)) << base << ToString(wrapped.outcome.reason);
+    const double energy = alone.context.Energy(alone.x);
+    EXPECT_NEAR(wrapped.context.Energy(wrapped.x), energy, 1e-6 * energy) << base;
+  }
+}
+
+TEST(BestOf, DisturbsTheStartByNothingIfSoAsked) {
+  const auto problem = MakeFileFit("animals/cat_110.csv", MakeFreeSpec(3, true, 12));
+  SolverTrial still(*problem, "best_of/starts=3/disturbance=0:foot_newton");
+  EXPECT_EQ(still.context.notes().at("best start"), "0 of 0 to 2");
+}
+
+}  // namespace
+}  // namespace batten
