@@ -80,9 +80,11 @@ class BlockFamily {
   /// Whether blocks depend on each other's parameters, whose order is kept: single blocks as Ceres
   /// binds them do not know it.
   virtual bool keeps_order() const { return false; }
-  /// Where it is, moves the parameters among all variables x to those in order, at which gradients
-  /// are what they say; E stays.
+  /// Moves, at equal E, parameters among all variables x that E does not depend on to where it does
+  /// if that lowers it: those whose order is kept to the ordered ones, those past an end of an open
+  /// curve to the end if E draws them back, else a hair past it.
   virtual void Seat(Eigen::VectorXd* /*x*/) const {}
+  virtual bool seats() const { return false; }  ///< Whether Seat does anything.
 
   /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x,
   /// for as long as a variable with a Window stays there; the loss and weight are to be given to

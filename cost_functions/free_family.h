@@ -88,6 +88,33 @@ class FreeFamily final : public BlockFamily {
     return MakeFreeCostFunction(site);
   }
 
+  bool seats() const override { return !setting_.basis->periodic(); }
+  void Seat(Eigen::VectorXd* x) const override {
+    const BsplineBasis& basis = *setting_.basis;
+    if (basis.periodic() || !x->allFinite()) return;
+    WithKernel([&](const auto& kernel) {
+      using Kernel = std::decay_t<decltype(kernel)>;
+      double residuals[Kernel::kMaxResiduals];
+      double jacobian[Kernel::kMaxResiduals * Kernel::kVariableStorage];
+      for (int i = 0; i < size(); ++i) {
+        double& t = (*x)[setting_.parameter_offset + i];
+        const double end = basis.Wrap(t);
+        if (t == end) continue;
+        const double outside = PastTheEnd(basis, t);
+        t = end;
+        if (!kernel.ResidualsAndJacobian(BlockOf(kernel, *x, i), x->data(), residuals, jacobian)) {
+          continue;
+        }
+        double slope = 0.0;
+        for (int r = 0; r < num_residuals(); ++r) {
+          slope += residuals[r] * jacobian[(r + 1) * kernel.num_variables() - 1];
+        }
+        const bool is_drawn_back = end == basis.domain_end() ? slope > 0.0 : slope < 0.0;
+        if (!is_drawn_back) t = outside;
+      }
+    });
+  }
+
   const Points& points() const { return sites_.points; }  ///< Q, scaled.
   /// Block `block` at x for a kernel's loops.
   template <typename Kernel>

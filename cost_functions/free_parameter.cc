@@ -19,7 +19,9 @@ class FreeParameterTerm final : public Term {
     }
     auto family = std::make_unique<FreeFamily<FreeParameterResidual>>(
         setting, FreeParameterResidual(), options.Real("weight"), MakeLoss(options, setting.size));
-    if (!setting.keep_order) return family;
+    // Two points whose parameters are held have no order to lose.
+    const bool none_moves = setting.ends_held && setting.data->size <= 2;
+    if (!setting.keep_order || none_moves) return family;
     return std::make_unique<OrderedFamily>(setting, std::move(family),
                                            MakeLoss(options, setting.size));
   }

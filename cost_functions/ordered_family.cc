@@ -20,6 +20,7 @@ Eigen::VectorXd OrderedFamily::Ordered(const Eigen::VectorXd& x,
 }
 
 void OrderedFamily::Seat(Eigen::VectorXd* x) const {
+  // Not the inner family's seats at the ends, which are a hair apart and in no order.
   if (x->allFinite()) *x = Ordered(*x, Order(*x));
 }
 
@@ -44,25 +45,7 @@ bool OrderedFamily::DoResiduals(const Eigen::VectorXd& x, Eigen::VectorXd* resid
 
 bool OrderedFamily::DoJacobian(const Eigen::VectorXd& x, int first_row,
                                std::vector<Eigen::Triplet<double>>* entries) const {
-  if (!x.allFinite()) return false;
-  const OrderedParameters order = Order(x);
-  std::vector<Eigen::Triplet<double>> by_t;
-  if (inner_->Jacobian(Ordered(x, order), first_row, &by_t) != Status::kOk) return false;
-  const std::vector<int> block_of = order.BlockOf();
-  for (const Eigen::Triplet<double>& entry : by_t) {
-    const int i = static_cast<int>(entry.col()) - begin_;
-    if (i < 0 || i >= count_) {
-      entries->push_back(entry);
-      continue;
-    }
-    // Each point of a block has the block's mean; those cut off have the first block's.
-    const auto b = static_cast<std::size_t>(block_of[static_cast<std::size_t>(i)]);
-    const int size = order.block_begins[b + 1] - order.block_begins[b];
-    for (int k = order.block_begins[b]; k < order.block_begins[b + 1]; ++k) {
-      entries->emplace_back(entry.row(), begin_ + k, entry.value() / size);
-    }
-  }
-  return true;
+  return x.allFinite() && inner_->Jacobian(Ordered(x, Order(x)), first_row, entries) == Status::kOk;
 }
 
 bool OrderedFamily::DoAddHessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& direction,

@@ -15,8 +15,8 @@ namespace batten {
 /// to the variables, E(P, t(s)). Points that would pass each other thus share one t. Its gradient
 /// is less the steepest descent from s = t, where E(P, t(s)) has a kink: 0 at minima over ordered t
 /// only. Elsewhere (s where t(s) pools points) no step is felt that does not move their mean: Seat
-/// puts s there. Jacobian and Hessian are those of points that stay together. Ends that are held
-/// are those of the domain, where others stop anyway.
+/// puts s there. The Jacobian is that by t, the Hessian that of points that stay together. Ends
+/// that are held are those of the domain, where others stop anyway.
 class OrderedFamily final : public BlockFamily {
  public:
   OrderedFamily(const FitSetting& setting, std::unique_ptr<BlockFamily> inner,
@@ -30,6 +30,7 @@ class OrderedFamily final : public BlockFamily {
   int size() const override { return inner_->size(); }
   int num_residuals() const override { return inner_->num_residuals(); }
   bool keeps_order() const override { return true; }
+  bool seats() const override { return true; }
   void Seat(Eigen::VectorXd* x) const override;
   /// These two are as if the order did not matter: for those who ask keeps_order() first.
   void Bind(const Eigen::VectorXd& x, int block, std::vector<int>* offsets,

@@ -1,6 +1,8 @@
 #include "cost_functions/ordered_parameters.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace batten {
 
@@ -33,7 +35,9 @@ OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s,
   }
   block_begins.push_back(m);
   if (period == 0.0) return;
-  while (num_cut < m && t[m - 1 - num_cut] > t[0] + period) ++num_cut;
+  // Both sides of the seam move by themselves, and round by themselves.
+  const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * (std::abs(t[0]) + period);
+  while (num_cut < m && t[m - 1 - num_cut] >= t[0] + period - rounding) ++num_cut;
   t.tail(num_cut).setConstant(t[0] + period);
 }
 
@@ -59,16 +63,23 @@ Eigen::VectorXd OrderedParameters::Apply(const Eigen::Ref<const Eigen::VectorXd>
 
 Eigen::VectorXd OrderedParameters::SteepestAscent(
     const Eigen::Ref<const Eigen::VectorXd>& g) const {
-  Eigen::VectorXd ascent = ApplyTransposed(g);
+  const auto regress = [](const Eigen::VectorXd& ascent) {
+    return Eigen::VectorXd(-OrderedParameters(-ascent, 0.0).t);
+  };
+  Eigen::VectorXd ascent(g.size());
   for (std::size_t b = 0; b + 1 < block_begins.size(); ++b) {
     const int begin = block_begins[b];
-    const int size = block_begins[b + 1] - begin;
-    // Those cut off a period after the first block stay there.
-    if (size == 1 || begin + size > t.size() - num_cut) continue;
-    Eigen::VectorXd descent = -g.segment(begin, size);
-    if (b == 0) descent.array() -= g.tail(num_cut).sum() / size;
-    ascent.segment(begin, size) = -OrderedParameters(descent, 0.0).t;
+    const auto end = std::min<Eigen::Index>(block_begins[b + 1], t.size() - num_cut);
+    if (begin < end) ascent.segment(begin, end - begin) = regress(g.segment(begin, end - begin));
   }
+  if (num_cut == 0) return ascent;
+  // A period on, the last points and the first block are neighbours at one place, in this order.
+  const auto first = std::min<Eigen::Index>(block_begins[1], t.size() - num_cut);
+  Eigen::VectorXd around(num_cut + first);
+  around << g.tail(num_cut), g.head(first);
+  around = regress(around);
+  ascent.tail(num_cut) = around.head(num_cut);
+  ascent.head(first) = around.tail(first);
   return ascent;
 }
 

@@ -6,9 +6,9 @@
 
 namespace batten {
 
-/// The nearest t to s with t_0 <= t_1 <= ... <= t_(m-1), and t_(m-1) <= t_0 + period on closed
-/// curves: the least-squares isotonic regression by pooling adjacent violators (Barlow et al.,
-/// Statistical Inference under Order Restrictions, 1972), then cut off a period after t_0.
+/// The nearest t to s with t_0 <= t_1 <= ... <= t_(m-1): the least-squares isotonic regression by
+/// pooling adjacent violators (Barlow et al., Statistical Inference under Order Restrictions,
+/// 1972). On closed curves then cut off a period after t_0.
 struct OrderedParameters {
   /// period: 0 on open curves.
   OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double period);
@@ -25,7 +25,7 @@ struct OrderedParameters {
 
   Eigen::VectorXd t;
   std::vector<int> block_begins;  ///< Of points with one t; then m.
-  int num_cut = 0;                ///< The last points, which are a period after the first block.
+  int num_cut = 0;                ///< The last points, those a period after the first block.
 };
 
 }  // namespace batten

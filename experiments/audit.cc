@@ -34,9 +34,11 @@ struct Sums {
   std::vector<Real> rounding;   // its worst case, n x d
   std::vector<int> num_points;  // that each control point moves, n
   // The same of free parameters, which no two points share: their squares are summed up at once.
-  Real squared_slope = 0;                 // of those that move
-  Real squared_pull = 0;                  // of those past an end that E draws back into the domain
-  Real squared_slope_rounding = 0;        // of both
+  Real squared_slope = 0;           // of those that move
+  Real squared_pull = 0;            // of those past an end that E draws back into the domain
+  Real squared_slope_rounding = 0;  // of both
+  std::vector<Real> around;         // of the last points, in one with the first a period on
+  bool goes_around = false;
   std::vector<std::vector<Real>> slopes;  // of each block of points that share one
   // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
   // which points near the user's origin may be far out.
@@ -134,7 +136,13 @@ void AddParameter(const AuditedFit& fit, int i, const Residual& residual, AuditC
     if (fit.parameter_blocks.empty()) {
       sums->squared_slope += slope * slope;
     } else {
-      sums->slopes[static_cast<std::size_t>(fit.parameter_blocks[i])].push_back(slope);
+      // Held ends have block 0 as well, but come to no place here.
+      const auto place = static_cast<std::size_t>(i);
+      sums->goes_around = sums->goes_around || (i > 0 && fit.parameter_blocks[place] == 0 &&
+                                                fit.parameter_blocks[place - 1] != 0);
+      (sums->goes_around ? sums->around
+                         : sums->slopes[static_cast<std::size_t>(fit.parameter_blocks[i])])
+          .push_back(slope);
     }
     return;
   }
@@ -144,28 +152,36 @@ void AddParameter(const AuditedFit& fit, int i, const Residual& residual, AuditC
   if (at_begin ? slope < 0 : slope > 0) sums->squared_pull += slope * slope;
 }
 
-/// Less the steepest descent of points that share one parameter and may part in their order only:
-/// the isotonic regression of -slopes, by its min-max formula.
+/// Squared length of the steepest descent of points that share one parameter and may part in their
+/// order only: of the isotonic regression of -slopes, the slopes of the greatest convex function
+/// below their sums.
 Real SquaredSlopeInOrder(const std::vector<Real>& slopes) {
   const std::size_t n = slopes.size();
   std::vector<Real> sums(n + 1, 0);
   for (std::size_t i = 0; i < n; ++i) sums[i + 1] = sums[i] - slopes[i];
-  Real squared = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    Real highest = -std::numeric_limits<Real>::infinity();
-    for (std::size_t a = 0; a <= i; ++a) {
-      Real lowest = std::numeric_limits<Real>::infinity();
-      for (std::size_t b = i + 1; b <= n; ++b) {
-        lowest = std::min(lowest, (sums[b] - sums[a]) / static_cast<Real>(b - a));
-      }
-      highest = std::max(highest, lowest);
+  const auto rise = [&sums](std::size_t a, std::size_t b) {
+    return (sums[b] - sums[a]) / static_cast<Real>(b - a);
+  };
+  std::vector<std::size_t> corners = {0};
+  for (std::size_t i = 1; i <= n; ++i) {
+    while (corners.size() > 1 &&
+           rise(corners[corners.size() - 2], corners.back()) >= rise(corners.back(), i)) {
+      corners.pop_back();
     }
-    squared += highest * highest;
+    corners.push_back(i);
+  }
+  Real squared = 0;
+  for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
+    const Real slope = rise(corners[k], corners[k + 1]);
+    squared += slope * slope * static_cast<Real>(corners[k + 1] - corners[k]);
   }
   return squared;
 }
 
 void AddBlocks(Sums* sums, AuditReport* report) {
+  if (sums->slopes.empty()) return;
+  // A period on, the last points come before those of the first block.
+  sums->slopes[0].insert(sums->slopes[0].begin(), sums->around.begin(), sums->around.end());
   for (const std::vector<Real>& slopes : sums->slopes) {
     sums->squared_slope += SquaredSlopeInOrder(slopes);
     if (slopes.size() > 1) report->num_sharing += static_cast<int>(slopes.size());
@@ -251,7 +267,8 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
   }
   // A gradient entry is a sum over the points that its control point moves, of terms no larger
   // than the 2 w B (|P| + |Q|) that the floor sums up.
-  const double gradient_allowed = (kRoundings + report.most_summands) * report.gradient_floor;
+  const double gradient_allowed =
+      (kRoundings + report.most_summands) * report.gradient_floor + report.foot_rounding;
   if (!(std::abs(claim.gradient_norm - report.gradient_norm) <= gradient_allowed)) {
     return Fails("|g|", claim.gradient_norm, report.gradient_norm, gradient_allowed);
   }
@@ -261,7 +278,8 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
                        " (allowed: " + Number(report.foot_allowed) + ")"};
   }
   if (!claim.minimum) return {true, ""};
-  const double target = claim.gradient_target + kRoundings * report.gradient_floor;
+  const double target =
+      claim.gradient_target + kRoundings * report.gradient_floor + report.foot_rounding;
   if (!(report.gradient_norm <= target)) {
     return {false, "claims a minimum with |g| at most " + Number(claim.gradient_target) +
                        ", but the audit finds " + Number(report.gradient_norm) +

@@ -56,6 +56,9 @@ struct AuditReport {
   /// nearer to a data point than C(t) is, and what rounding allows of it.
   double foot_excess = 0.0;
   double foot_allowed = 0.0;
+  /// What the rounding of feet is worth in |g|: E falls along t by a slope that is not quite 0
+  /// there, and t follows the control points or not.
+  double foot_rounding = 0.0;
   int num_points = 0;     // m
   int most_summands = 0;  // largest number of points that one control point moves
 };

@@ -23,6 +23,10 @@ std::vector<double> SampleSpans(const AuditedFit& fit, int per_span, AuditCurve*
       }
     }
   }
+  curve->MoveTo(static_cast<double>(curve->domain_end()));
+  for (int c = 0; c < fit.dimension; ++c) {
+    samples.push_back(static_cast<double>(curve->Coordinate(c)));
+  }
   return samples;
 }
 
@@ -37,6 +41,57 @@ double NearestDistance(const std::vector<double>& samples, const double* point, 
     nearest = std::min(nearest, squared);
   }
   return std::sqrt(nearest);
+}
+
+using Real = AuditCurve::Real;
+
+/// One point compared at t: r = C(t) - Q, C' and r . C'.
+struct AtParameter {
+  AtParameter(const AuditedFit& fit, const double* point, double t, AuditCurve* curve) {
+    curve->MoveTo(t);
+    for (int c = 0; c < fit.dimension; ++c) {
+      residual.push_back(curve->Coordinate(c) - point[c]);
+      squared_distance += residual.back() * residual.back();
+    }
+    basis = curve->BasisValues();
+    weights = curve->DerivativeWeights();
+    for (int c = 0; c < fit.dimension; ++c) {
+      Real sum = 0;
+      for (int j = 1; j <= fit.degree; ++j) {
+        sum += weights[j] * (Real(fit.control_points[curve->ControlPoint(j) * fit.dimension + c]) -
+                             fit.control_points[curve->ControlPoint(j - 1) * fit.dimension + c]);
+      }
+      velocity.push_back(sum);
+      slope += residual[c] * sum;
+    }
+  }
+  std::vector<Real> residual, velocity, basis, weights;
+  Real squared_distance = 0;
+  Real slope = 0;
+};
+
+/// |dE/dt| |dt/dP| of one point: dt/dP_jc = -(B_j' r_c + B_j C_c') / (d slope / dt), the latter by
+/// a difference.
+Real RoundingOfFoot(const AuditedFit& fit, const double* point, double t, double weight,
+                    AuditCurve* curve) {
+  const AtParameter here(fit, point, t, curve);
+  const double step = 1e-6 * static_cast<double>(curve->domain_end() - curve->domain_begin());
+  if (!fit.periodic && (t - step < curve->domain_begin() || t + step > curve->domain_end())) {
+    return 0;
+  }
+  const Real change = (AtParameter(fit, point, t + step, curve).slope -
+                       AtParameter(fit, point, t - step, curve).slope) /
+                      (2 * step);
+  Real squared = 0;
+  for (int j = 0; j <= fit.degree; ++j) {
+    const Real derivative = here.weights[j] - (j < fit.degree ? here.weights[j + 1] : 0);
+    for (int c = 0; c < fit.dimension; ++c) {
+      const Real entry = derivative * here.residual[c] + here.basis[j] * here.velocity[c];
+      squared += entry * entry;
+    }
+  }
+  // Where the slope hardly changes (a centre of curvature) t does not follow.
+  return change > 0 ? 2 * weight * std::abs(here.slope) * std::sqrt(squared) / change : 0;
 }
 
 }  // namespace
@@ -57,13 +112,11 @@ void AuditFeet(const AuditedFit& fit, AuditReport* report) {
   for (const double coordinate : fit.points) largest = std::max(largest, std::abs(coordinate));
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const double* const point = &fit.points[i * static_cast<std::size_t>(fit.dimension)];
-    curve.MoveTo(fit.parameters[i]);
-    AuditCurve::Real squared = 0;
-    for (int c = 0; c < fit.dimension; ++c) {
-      const AuditCurve::Real difference = curve.Coordinate(c) - point[c];
-      squared += difference * difference;
-    }
-    const auto distance = static_cast<double>(std::sqrt(squared));
+    const AtParameter here(fit, point, fit.parameters[i], &curve);
+    const auto distance = static_cast<double>(std::sqrt(here.squared_distance));
+    const double weight = fit.weights.empty() ? 1.0 : fit.weights[i];
+    report->foot_rounding +=
+        static_cast<double>(RoundingOfFoot(fit, point, fit.parameters[i], weight, &curve));
     const double excess = distance - NearestDistance(samples, point, fit.dimension);
     // Written so that NaN is not lost.
     if (!(excess <= report->foot_excess)) report->foot_excess = excess;

@@ -25,26 +25,31 @@ const char* DistanceTerm(ParameterKind kind) {
   }
 }
 
-/// What the terms of `problem` together weigh; NaN if the audit does not apply: it knows distances
-/// from the data without loss, where no constraint holds more than parameters.
+bool IsDistance(const Problem::TermInstance& term, const CurveFit& fit) {
+  NameSpec name;
+  std::string error;
+  return ParseNameSpec(term.name, &name, &error) &&
+         name.name == DistanceTerm(fit.spec().parameter_kind);
+}
+
+/// What the terms that are distances from the data together weigh.
 double DistanceWeight(const Problem& problem) {
-  const CurveFit* fit = problem.curve_fit();
-  const bool is_fixed = fit != nullptr && fit->spec().parameter_kind == ParameterKind::kFixed;
-  bool plain = fit != nullptr;
   double weight = 0.0;
   for (const Problem::TermInstance& term : problem.terms()) {
-    NameSpec name;
-    std::string error;
-    plain = plain && ParseNameSpec(term.name, &name, &error) &&
-            name.name == DistanceTerm(fit->spec().parameter_kind) && term.family->loss() == nullptr;
-    weight += term.family->weight();
+    if (IsDistance(term, *problem.curve_fit())) weight += term.family->weight();
   }
-  if (is_fixed) {
-    plain = plain && problem.elimination().trivial();
-  } else {
-    plain = plain && (fit->setting().keep_order || FreeView::Make(problem) != nullptr);
+  return weight;
+}
+
+/// The audit knows distances from the data without loss, where no constraint holds more than
+/// parameters.
+bool AuditApplies(const Problem& problem) {
+  const CurveFit& fit = *problem.curve_fit();
+  for (const Problem::TermInstance& term : problem.terms()) {
+    if (!IsDistance(term, fit) || term.family->loss() != nullptr) return false;
   }
-  return plain ? weight : std::numeric_limits<double>::quiet_NaN();
+  if (fit.spec().parameter_kind == ParameterKind::kFixed) return problem.elimination().trivial();
+  return fit.setting().keep_order || FreeView::Make(problem) != nullptr;
 }
 
 std::vector<ParameterState> ParameterStates(const Problem& problem, const Eigen::VectorXd& x) {
@@ -158,10 +163,10 @@ FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec
   }
   const BsplineCurve curve = fit->Curve(run.x);
   const double weight = DistanceWeight(problem);
-  report.audited = !std::isnan(weight);
+  report.audited = AuditApplies(problem);
   Eigen::VectorXd feet = fit->Parameters(run.x);
   MeasureDistances(*fit, curve, feet, &report);
-  MeasureFootPoints(*fit, curve, report.audited ? weight : 1.0, &feet, &report);
+  MeasureFootPoints(*fit, curve, weight, &feet, &report);
   report.shape = ShapeBesideData(*fit, curve, feet);
   if (curve.dimension() >= 2) report.fairness = MeasureFairness(curve);
   if (report.audited) {

@@ -108,7 +108,8 @@ std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double dist
 
 bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
                    StartComparison* comparison, std::string* error) {
-  if (problem.curve_fit() == nullptr || !problem.curve_fit()->has_free_parameters()) {
+  const CurveFit* fit = problem.curve_fit();
+  if (fit == nullptr || fit->spec().parameter_kind == ParameterKind::kFixed) {
     *error =
         problem.name() + ": starts are compared where parameters are free; here they are fixed";
     return false;

@@ -261,6 +261,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;
     if (robust.has_value() && !is_asked_for) problem->SetStart(*robust);
   }
+  bool has_parameters = !is_free;
   double largest_weight = 0.0;
   std::set<std::pair<const Term*, std::map<std::string, std::string>>> meanings;
   for (const NameSpec& name : fit->spec_.terms) {
@@ -268,6 +269,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     OptionValues options;
     if (!TermRegistry::Global().Resolve(name, &term, &options, error)) return nullptr;
     if (!fit->CheckKind(name, *term, error)) return nullptr;
+    has_parameters = has_parameters || term->Info().free_parameters;
     if (!meanings.emplace(term, options.ToText()).second) {
       *error = "term " + name.ToString() + " is given twice; give it once, with twice the weight";
       return nullptr;
@@ -276,6 +278,10 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     if (family == nullptr) return nullptr;
     largest_weight = std::max(largest_weight, family->weight());
     problem->AddTerm(name.ToString(), std::move(family));
+  }
+  if (!has_parameters) {
+    *error = "parameters are free, but no term has them; add free_parameter";
+    return nullptr;
   }
   if (largest_weight < kSmallestTermWeight) {
     *error = "the largest weight of a term is " + NumberText(largest_weight) +

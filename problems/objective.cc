@@ -24,6 +24,8 @@ Objective::Objective(const Problem* problem, EvaluationMonitor* monitor, Options
       view_(options.compile ? CurveView::Make(*problem, monitor) : nullptr),
       keeps_order_(std::any_of(problem->terms().begin(), problem->terms().end(),
                                [](const auto& term) { return term.family->keeps_order(); })),
+      seats_(std::any_of(problem->terms().begin(), problem->terms().end(),
+                         [](const auto& term) { return term.family->seats(); })),
       projects_(problem->curve_fit() != nullptr && problem->curve_fit()->is_projected()) {}
 
 bool Objective::AllowProjection(const Eigen::VectorXd& x) {
@@ -40,7 +42,7 @@ const FreeView* Objective::free_view() const {
 }
 
 void Objective::Seat(Eigen::VectorXd* x) const {
-  if (!keeps_order_) return;
+  if (!seats_) return;
   Eigen::VectorXd all = Expand(*x);
   for (const Problem::TermInstance& term : problem_->terms()) term.family->Seat(&all);
   *x = problem_->elimination().FreeVariables(all);

@@ -55,9 +55,11 @@ class Objective {
   /// The structure of problems with free parameters; null for others. Made at the first call.
   const FreeView* free_view() const;
 
-  /// Whether the order of free parameters is kept. Then a method is to call Seat at its iterates.
-  bool keeps_order() const { return keeps_order_; }
-  /// Moves x, at equal E, to where the gradient is that of a minimum over ordered parameters.
+  bool keeps_order() const { return keeps_order_; }  ///< Of free parameters.
+  /// Whether a method is to call Seat at its iterates.
+  bool seats() const { return seats_; }
+  /// Moves x, at equal E, to where the gradient is 0 at minima over parameters in order and in the
+  /// domain only: BlockFamily::Seat.
   void Seat(Eigen::VectorXd* x) const;
 
   /// Counts an evaluation at x that a library does itself, from problem().terms(). False: it must
@@ -94,6 +96,7 @@ class Objective {
   int num_variables_;
   std::unique_ptr<CurveView> view_;
   bool keeps_order_;
+  bool seats_;
   bool projects_;  // parameters are projected
   Eigen::VectorXd projected_at_;
   mutable bool free_view_is_made_ = false;

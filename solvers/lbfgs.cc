@@ -128,9 +128,9 @@ LineSearchEnd LbfgsSolver::Search(const Eigen::VectorXd& x, double slope, LinePo
 }
 
 /// The slope along the direction, which is first turned to where a step may lead: between x and the
-/// point that goes with its end no parameters pass each other, and E has no kink.
+/// point that goes with its end no parameters pass each other or an end, and E has no kink.
 double LbfgsSolver::AimAlong(const Eigen::VectorXd& x) {
-  if (objective()->keeps_order()) {
+  if (objective()->seats()) {
     direction_ += x;
     objective()->Seat(&direction_);
     direction_ -= x;
@@ -138,9 +138,9 @@ double LbfgsSolver::AimAlong(const Eigen::VectorXd& x) {
   return gradient_.dot(direction_);
 }
 
-double LbfgsSolver::AimDownhill(const Eigen::VectorXd& x) {
+double LbfgsSolver::AimDownhill(const Eigen::VectorXd& x, double part) {
   memory_.Clear();
-  direction_ = -gradient_;
+  direction_ = -part * gradient_;
   return AimAlong(x);
 }
 
@@ -155,6 +155,11 @@ std::optional<Outcome> LbfgsSolver::DoStep(Eigen::VectorXd* x) {
     // The pairs may hold only noise: once more from the plain gradient.
     end = Search(*x, AimDownhill(*x), &found, &status);
   }
+  // A short step is turned less, and goes down at last.
+  for (double part = 1e-2; end == LineSearchEnd::kNoStep && objective()->seats() && part > 1e-9;
+       part *= 1e-2) {
+    end = Search(*x, AimDownhill(*x, part), &found, &status);
+  }
   if (end == LineSearchEnd::kStopped) {
     return Ended(status == Status::kNonFinite ? status : Status::kStop);
   }
@@ -162,7 +167,7 @@ std::optional<Outcome> LbfgsSolver::DoStep(Eigen::VectorXd* x) {
     return Outcome{StopReason::kLineSearchEnded, "no step along the gradient lowers E measurably"};
   }
   if (status != Status::kOk) return Ended(status);
-  if (objective()->keeps_order()) {
+  if (objective()->seats()) {
     objective()->Seat(&next_x_);
     status = objective()->EnergyAndGradient(next_x_, &next_energy_, &next_gradient_);
     if (status != Status::kOk) return Ended(status);

@@ -23,7 +23,7 @@ class LbfgsSolver final : public Stepper {
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
   double FirstStep() const;
   double AimAlong(const Eigen::VectorXd& x);
-  double AimDownhill(const Eigen::VectorXd& x);
+  double AimDownhill(const Eigen::VectorXd& x, double part = 1.0);
   LineSearchEnd Search(const Eigen::VectorXd& x, double slope, LinePoint* found, Status* status);
 
   WolfeOptions wolfe_;

@@ -122,8 +122,9 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
   std::string text = CurveLines(label, problem) + SolverLines(run) + EnergyLines(problem, run);
   text += Line("distance", "rms " + Short(report.rms) + ", largest " + Short(report.max) +
                                " (at the parameters)");
-  text += Line("", "rms " + Short(report.rms_orthogonal) + ", largest " +
-                       Short(report.max_orthogonal) + " (orthogonal)");
+  text +=
+      Line("", "rms " + Short(report.rms_orthogonal) + ", largest " + Short(report.max_orthogonal) +
+                   " (orthogonal), E there " + Short(report.energy_at_foot_points));
   if (report.shape.has_value()) text += Line("shape", ShapeText(*report.shape));
   if (report.fairness.has_value()) text += Line("fairness", FairnessText(*report.fairness));
   if (report.audited && report.audit.num_sharing > 0) {

@@ -49,6 +49,12 @@ TEST(OrderedParameters, LeavesThoseInOrderToTheLastBit) {
   EXPECT_EQ(OrderedParameters(s, 0.0).block_begins, (std::vector<int>{0, 1, 4, 5, 6}));
 }
 
+TEST(OrderedParameters, MayBeNoneAtAll) {
+  const OrderedParameters none(Eigen::VectorXd(0), 0.0);
+  EXPECT_EQ(none.t.size(), 0);
+  EXPECT_EQ(none.SteepestAscent(Eigen::VectorXd(0)).size(), 0);
+}
+
 TEST(OrderedParameters, PoolsThoseThatPassEachOther) {
   const OrderedParameters order(Vector({0.2, 0.6, 0.4, 0.9}), 0.0);
   EXPECT_LT((order.t - Vector({0.2, 0.5, 0.5, 0.9})).norm(), 4 * kEps);
@@ -92,6 +98,13 @@ TEST(OrderedParameters, DescendWhereOrderAllowsIt) {
   EXPECT_EQ(order.SteepestAscent(apart), apart);
   // E would fall if they passed each other: they stay, at a minimum.
   EXPECT_TRUE(order.SteepestAscent(Vector({0.0, -2.0, 2.0, 0.0})).isZero(0.0));
+  // Two points of which one is a period on: they may part if it goes back.
+  const OrderedParameters around(Vector({0.0, 0.4, 1.0}), 1.0);
+  EXPECT_EQ(around.num_cut, 1);
+  EXPECT_EQ(around.BlockOf(), (std::vector<int>{0, 1, 0}));
+  EXPECT_EQ(around.SteepestAscent(Vector({-1.0, 0.5, 2.0})), Vector({-1.0, 0.5, 2.0}));
+  EXPECT_EQ(around.SteepestAscent(Vector({1.0, 0.5, -1.0})), Vector({0.0, 0.5, 0.0}));
+  EXPECT_EQ(around.SteepestAscent(Vector({3.0, 0.5, -1.0})), Vector({1.0, 0.5, 1.0}));
   // They go on together.
   EXPECT_EQ(order.SteepestAscent(Vector({0.0, -3.0, 1.0, 0.0})), Vector({0.0, -1.0, -1.0, 0.0}));
 }

@@ -37,6 +37,30 @@ TEST(Guards, LeaveNoLoopWhateverTheSolver) {
   }
 }
 
+TEST(Guards, AreNoPartOfTheEnergyAtFootPoints) {
+  FitSpec spec = MakeFreeSpec(3, true, 12, "circle", "free_parameter/weight=4");
+  spec.guard = NameSpec{"length", {}, nullptr};
+  const auto problem = MakeFileFit("animals/rhino_100.csv", spec);
+  const RunResult run = RunSolver(*problem, "newton");
+  const FitReport report = MeasureFit(*problem, run, {});
+  // The root mean square knows no weights: of 100 points that weigh 4 each.
+  const double expected = 4.0 * 100.0 * report.rms_orthogonal * report.rms_orthogonal;
+  EXPECT_NEAR(report.energy_at_foot_points, expected, 1e-12 * expected);
+}
+
+TEST(FreeFits, OfOpenCurvesClaimNoMinimumPastTheirEnds) {
+  // Points that go on past where the curve from a circle ends.
+  for (const int n : {5, 6, 7, 9}) {
+    DataSet data = MakeNoisyBean(40, 2, 660);
+    data.weights.reset();
+    for (const char* start : {"data", "circle"}) {
+      const auto problem = MakeFit(data, MakeFreeSpec(3, false, n, start));
+      const FitReport report = Report(*problem, "lbfgs", 2000);
+      EXPECT_TRUE(report.verdict.holds) << n << start << report.verdict.failure;
+    }
+  }
+}
+
 TEST(ProjectedFits, AreAuditedAtTheirFeet) {
   const auto problem = MakeFileFit("animals/rhino_100.csv", MakeProjectedSpec(3, true, 12));
   for (const char* solver : {"lbfgs", "newton", "lm_schur", "pdm"}) {

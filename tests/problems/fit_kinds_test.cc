@@ -70,6 +70,11 @@ TEST(ProjectedFit, TakesTermsThatDoNotSayWhatTheParametersAre) {
           MakeProjectedSpec(3, true, 9, "circle", "foot_point,fairing/weight=1e-6"));
 }
 
+TEST(FreeFit, HasATermWithParameters) {
+  EXPECT_THAT(WhyNot(MakeFreeSpec(3, true, 9, "circle", "interpolation")),
+              HasSubstr("no term has them; add free_parameter"));
+}
+
 TEST(FitConstraints, AreThoseOfFreeParameters) {
   FitSpec projected = MakeProjectedSpec(3, false, 9, "data");
   projected.hold_ends = true;
