@@ -12,14 +12,13 @@ struct Node {
   Eigen::RowVectorXd point;
 };
 
-/// Up to three nodes of different parameters, nearest to the end first. Data need not be sorted.
-std::vector<Node> NodesAt(const FitSetting& setting, bool at_end) {
-  constexpr std::size_t kNodes = 3;
+/// Up to so many nodes of different parameters, nearest to the end first. Data need not be sorted.
+std::vector<Node> NodesAt(const FitSetting& setting, bool at_end, std::size_t most) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Sites& data = *setting.data;
   std::vector<Node> nodes;
   double last = at_end ? kInfinity : -kInfinity;
-  while (nodes.size() < kNodes) {
+  while (nodes.size() < most) {
     double next = at_end ? -kInfinity : kInfinity;
     for (int i = 0; i < data.size; ++i) {
       const double t = data.parameters[i];
@@ -43,8 +42,12 @@ std::vector<Node> NodesAt(const FitSetting& setting, bool at_end) {
 
 }  // namespace
 
+Eigen::RowVectorXd EndDatum(const FitSetting& setting, bool at_end) {
+  return NodesAt(setting, at_end, 1).front().point;
+}
+
 std::optional<Eigen::RowVectorXd> BesselTangent(const FitSetting& setting, bool at_end) {
-  const std::vector<Node> nodes = NodesAt(setting, at_end);
+  const std::vector<Node> nodes = NodesAt(setting, at_end, 3);
   if (nodes.size() < 2) return std::nullopt;
   const double t = at_end ? setting.basis->domain_end() : setting.basis->domain_begin();
   const Eigen::RowVectorXd first =

@@ -1,18 +1,15 @@
 #include "cost_functions/end_condition.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "cost_functions/bessel_tangents.h"
+#include "cost_functions/end_options.h"
 #include "cost_functions/functor_family.h"
 
 namespace batten {
 namespace {
-
-constexpr const char* kCoordinates[] = {"x", "y", "z", "w"};
-constexpr double kNotGiven = std::numeric_limits<double>::infinity();
 
 /// What the sites at the ends point into.
 struct Ends {
@@ -20,25 +17,6 @@ struct Ends {
   std::vector<double> points;
   std::vector<double> weights;
 };
-
-/// Mean of the data points whose parameter is nearest to the end.
-Eigen::RowVectorXd EndDatum(const FitSetting& setting, bool at_end) {
-  const Sites& data = *setting.data;
-  double nearest = data.parameters[0];
-  for (int i = 1; i < data.size; ++i) {
-    const double t = data.parameters[i];
-    nearest = at_end ? std::max(nearest, t) : std::min(nearest, t);
-  }
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(setting.dimension);
-  int count = 0;
-  for (int i = 0; i < data.size; ++i) {
-    if (data.parameters[i] != nearest) continue;
-    sum += Eigen::Map<const Eigen::RowVectorXd>(
-        data.points + static_cast<std::ptrdiff_t>(i) * setting.dimension, setting.dimension);
-    ++count;
-  }
-  return sum / count;
-}
 
 template <int kDerivative>
 class EndTerm final : public Term {
@@ -85,16 +63,17 @@ class EndTerm final : public Term {
     std::optional<Eigen::RowVectorXd> value = Eigen::RowVectorXd::Zero(setting.dimension).eval();
     if (kDerivative == 0) value = EndDatum(setting, at_end);
     if (kDerivative == 1) value = BesselTangent(setting, at_end);
-    for (int c = 0; c < kMaxDimension; ++c) {
-      const double given = options.Real(kCoordinates[c]);
-      if (given == kNotGiven) continue;
-      if (c >= setting.dimension) {
-        *error = "term " + EndResidual<kDerivative>::Info().name + ": " + kCoordinates[c] +
-                 " is given, but the data have dimension " + std::to_string(setting.dimension);
-        return false;
-      }
+    Eigen::RowVectorXd given;
+    std::string beyond;
+    if (!GivenCoordinates(options, setting.dimension, &given, &beyond)) {
+      *error = "term " + EndResidual<kDerivative>::Info().name + ": " + beyond +
+               " is given, but the data have dimension " + std::to_string(setting.dimension);
+      return false;
+    }
+    for (int c = 0; c < setting.dimension; ++c) {
+      if (given[c] == kNotGiven) continue;
       if (!value.has_value()) value = Eigen::RowVectorXd::Zero(setting.dimension).eval();
-      (*value)[c] = given;
+      (*value)[c] = given[c];
     }
     if (!value.has_value()) {
       *error = "term " + EndResidual<kDerivative>::Info().name +
@@ -119,21 +98,9 @@ class EndTerm final : public Term {
   }
 };
 
-OptionInfo EndOption() {
-  return OptionInfo::Word("end", "both", {"both", "begin", "end"}, "which end of the domain");
-}
-
 OptionInfo UnitsOption(const std::string& source) {
   return OptionInfo::Word("units", "scale_free", {"scale_free", "source"},
                           "residual times powers of the domain's length, or " + source);
-}
-
-void AddCoordinates(const std::string& what, TermInfo* info) {
-  for (const char* name : kCoordinates) {
-    info->options.push_back(OptionInfo::Real(
-        name, kNotGiven, -1e150, kNotGiven,
-        std::string("coordinate ") + name + " of " + what + " instead; inf: not given"));
-  }
 }
 
 }  // namespace
@@ -147,19 +114,19 @@ TermInfo EndResidual<kDerivative>::Info() {
     info.name = "end_point";
     info.summary = "distance of the curve's ends from the first and last data point";
     info.source = "Piegl & Tiller, The NURBS Book, sec. 9.2";
-    AddCoordinates("the point", &info);
+    AddCoordinateOptions(" of the point instead", &info.options);
   } else if (kDerivative == 1) {
     info.name = "end_tangent";
     info.summary = "difference of the derivative at the ends from Bessel's or a given one";
     info.source = "Farin, Curves and Surfaces for CAGD, sec. 9.8; Lan Hao 2008";
     info.options.push_back(UnitsOption("times the knot difference over the degree"));
-    AddCoordinates("the derivative", &info);
+    AddCoordinateOptions(" of the derivative instead", &info.options);
   } else {
     info.name = "end_curvature";
     info.summary = "difference of the second derivative at the ends from zero or a given one";
     info.source = "de Boor, A Practical Guide to Splines, ch. IV";
     info.options.push_back(UnitsOption("as it is"));
-    AddCoordinates("the second derivative", &info);
+    AddCoordinateOptions(" of the second derivative instead", &info.options);
   }
   return info;
 }

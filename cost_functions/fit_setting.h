@@ -49,6 +49,10 @@ struct FitSetting {
   const Sites* data = nullptr;   // the data points at their fixed parameters, or at their start
   /// Factors of fairing terms, one per non-empty span of the domain in their order; null: all 1.
   const std::vector<double>* span_weights = nullptr;
+  /// What is taken from coordinate c of a site's point: points move with the origin.
+  double Origin(const Sites& sites, int c) const {
+    return sites.points_are_displacements ? 0.0 : center[c];
+  }
   /// False: loops with run-time sizes also where compiled ones exist (the benchmark shows both).
   bool use_static_sizes = true;
 };

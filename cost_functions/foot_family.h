@@ -91,9 +91,9 @@ class FootFamily final : public BlockFamily {
   /// One block with its foot: plain residuals; if `jacobian` is not null their total derivative,
   /// num_residuals x (p + 1) d row-major, and that of t, (p + 1) d.
   template <typename Kernel>
-  bool EvaluateBlock(const Kernel& kernel, const Eigen::VectorXd& all, int i, double* residuals,
-                     double* jacobian, double* dt) const {
-    const auto block = inner_.BlockOf(kernel, all, i);
+  bool EvaluateBlock(const Kernel& kernel, const typename Kernel::Block& block,
+                     const Eigen::VectorXd& all, double* residuals, double* jacobian,
+                     double* dt) const {
     if (jacobian == nullptr) return kernel.Residuals(block, all.data(), residuals);
     const int local = kernel.num_variables() - 1;  // t is behind them
     const int k = num_residuals();
@@ -138,10 +138,10 @@ class FootFamily final : public BlockFamily {
       double jacobian[Kernel::kMaxResiduals * Kernel::kVariableStorage];
       double dt[Kernel::kVariableStorage];
       for (int i = begin; i < end; ++i) {
-        if (!EvaluateBlock(kernel, all, i, residuals, derivatives ? jacobian : nullptr, dt)) {
+        const auto block = inner_.BlockOf(kernel, all, i);
+        if (!EvaluateBlock(kernel, block, all, residuals, derivatives ? jacobian : nullptr, dt)) {
           return false;
         }
-        const auto block = inner_.BlockOf(kernel, all, i);
         body([&](int v) { return kernel.Offset(block, v); }, i, residuals, jacobian, dt);
       }
       return true;

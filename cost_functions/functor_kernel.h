@@ -55,7 +55,6 @@ class FunctorKernel {
   NumberSite MakeSite(int site_index, int span) const {
     NumberSite site(basis_.degree(), dimension());
     const int item = sites_.item(site_index);
-    const bool moves = !sites_.points_are_displacements;
     EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span,
                                 sites_.parameters[item], Functor::kDerivatives,
                                 site.mutable_basis());
@@ -64,7 +63,7 @@ class FunctorKernel {
           sites_.points == nullptr
               ? 0.0
               : (sites_.points[static_cast<std::ptrdiff_t>(item) * dimension() + c] -
-                 (moves ? setting_.center[c] : 0.0)) *
+                 setting_.Origin(sites_, c)) *
                     setting_.scale;
     }
     site.set_root_weight(sites_.weights == nullptr ? 1.0 : std::sqrt(sites_.weights[item]));

@@ -105,7 +105,7 @@ class FunctorRows {
       for (int c = 0; c < dimension(); ++c) {
         double point = 0.0;
         if (sites_.points != nullptr) {
-          const double center = sites_.points_are_displacements ? 0.0 : setting_.center[c];
+          const double center = setting_.Origin(sites_, c);
           point = (sites_.points[static_cast<std::ptrdiff_t>(item) * dimension() + c] - center) *
                   setting_.scale;
         }
@@ -200,7 +200,7 @@ class FunctorRows {
     for (int c = 0; c < dimension(); ++c) {
       Pack point(0.0);
       if (sites_.points != nullptr) {
-        const double center = sites_.points_are_displacements ? 0.0 : setting_.center[c];
+        const double center = setting_.Origin(sites_, c);
         point = (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - center) *
                 setting_.scale;
       }

@@ -70,13 +70,12 @@ void AppendCurve(const BezierCurve& curve, int across, int up, PlotSeries* serie
 // Each path is its own series: the plot has no gaps within one.
 PlotPanel ProjectionPanel(const std::vector<BezierPath>& paths, const CurveSubdivision& result,
                           int across, int up) {
-  static const char* const kAxes[] = {"x", "y", "z", "w"};
   constexpr int kPolygonColor = 7, kCurveColor = 0, kVertexColor = 1;
   PlotPanel panel;
   panel.equal_scale = true;
   if (result.points.cols() > 2) {
-    panel.x_label = kAxes[across];
-    panel.y_label = kAxes[up];
+    panel.x_label = kCoordinateNames[across];
+    panel.y_label = kCoordinateNames[up];
   }
   // Below the curve, which many marks would hide.
   constexpr std::int64_t kFewPieces = 100;

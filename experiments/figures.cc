@@ -81,7 +81,6 @@ std::string CurveBlock(const BsplineCurve& curve) {
 
 /// The axes' ranges: data and control points, with a margin that is alike for all.
 std::vector<FigureAxis> Axes(const CurveFit& fit, const Points& control_points) {
-  static const char* const kNames[] = {"x", "y", "z", "w"};
   constexpr double kMargin = 0.04;
   constexpr double kThinnest = 0.08;  // of the longest side
   const Points& points = fit.data().points;
@@ -94,7 +93,7 @@ std::vector<FigureAxis> Axes(const CurveFit& fit, const Points& control_points) 
   for (int c = 0; c < fit.dimension(); ++c) {
     const double thin = std::max(0.0, kThinnest * side - (high[c] - low[c])) / 2;
     const double margin = kMargin * side + thin;
-    axes.push_back({kNames[c], c + 1, low[c] - margin, high[c] + margin});
+    axes.push_back({kCoordinateNames[c], c + 1, low[c] - margin, high[c] + margin});
   }
   return axes;
 }

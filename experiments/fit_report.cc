@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "cost_functions/options.h"
-#include "cost_functions/ordered_parameters.h"
 #include "problems/free_view.h"
 #include "splines/closest_point.h"
 
@@ -78,10 +77,8 @@ std::vector<ParameterState> ParameterStates(const Problem& problem, const Eigen:
 std::vector<int> SharedParameters(const CurveFit& fit, const Eigen::VectorXd& x) {
   if (!fit.setting().keep_order) return {};
   const int held = fit.setting().ends_held ? 1 : 0;
-  const auto m = fit.parameters().size();
-  const OrderedParameters order(x.segment(fit.setting().parameter_offset + held, m - 2 * held),
-                                fit.basis().periodic() ? fit.basis().domain_length() : 0.0);
-  std::vector<int> blocks = order.BlockOf();
+  std::vector<int> blocks =
+      fit.Order(x.segment(fit.setting().parameter_offset, fit.parameters().size())).BlockOf();
   // Those that are held come to no block: any number will do.
   blocks.insert(blocks.begin(), static_cast<std::size_t>(held), 0);
   blocks.insert(blocks.end(), static_cast<std::size_t>(held), 0);

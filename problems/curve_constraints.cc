@@ -2,35 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "cost_functions/bessel_tangents.h"
+#include "cost_functions/end_options.h"
 #include "problems/fit_problem.h"
 #include "splines/basis_functions.h"
 
 namespace batten {
 namespace {
 
-constexpr const char* kCoordinates[] = {"x", "y", "z", "w"};
-constexpr double kFree = std::numeric_limits<double>::infinity();
 constexpr double kLargest = 1e150;
 
-OptionInfo EndOption() {
-  return OptionInfo::Word("end", "both", {"both", "begin", "end"}, "which end of the domain");
-}
-
 OptionInfo ParameterOption() {
-  return OptionInfo::Real("t", kFree, -kLargest, kFree, "parameter, in the domain");
+  return OptionInfo::Real("t", kNotGiven, -kLargest, kNotGiven, "parameter, in the domain");
 }
 
 std::vector<OptionInfo> WithCoordinates(std::vector<OptionInfo> options) {
-  for (const char* name : kCoordinates) {
-    options.push_back(OptionInfo::Real(name, kFree, -kLargest, kFree,
-                                       std::string("coordinate ") + name + "; inf: not given"));
-  }
+  AddCoordinateOptions("", &options);
   return options;
 }
 
@@ -69,7 +60,7 @@ class Builder {
   void Append(std::vector<LinearConstraint>* constraints) const {
     for (const Functional& functional : functionals_) {
       for (int c = 0; c < fit_.dimension(); ++c) {
-        if (functional.value[c] == kFree) continue;
+        if (functional.value[c] == kNotGiven) continue;
         constraints->push_back(Constraint(functional, c));
       }
     }
@@ -81,16 +72,16 @@ class Builder {
     return false;
   }
 
-  /// Values of the options x, y, ...; false if one is not a coordinate of the data.
-  bool GivenCoordinates(Eigen::RowVectorXd* value) const {
-    for (int c = 0; c < kMaxDimension; ++c) {
-      const double given = options_.Real(kCoordinates[c]);
-      if (given == kFree) continue;
-      if (c >= fit_.dimension()) {
-        return Refuse(std::string("gives ") + kCoordinates[c] + ", but the data have dimension " +
-                      std::to_string(fit_.dimension()));
-      }
-      (*value)[c] = given;
+  /// Overwrites what the options x, y, ... give; false if one is not a coordinate of the data.
+  bool TakeCoordinates(Eigen::RowVectorXd* value) const {
+    Eigen::RowVectorXd given;
+    std::string beyond;
+    if (!GivenCoordinates(options_, fit_.dimension(), &given, &beyond)) {
+      return Refuse("gives " + beyond + ", but the data have dimension " +
+                    std::to_string(fit_.dimension()));
+    }
+    for (int c = 0; c < fit_.dimension(); ++c) {
+      if (given[c] != kNotGiven) (*value)[c] = given[c];
     }
     return true;
   }
@@ -106,14 +97,14 @@ class Builder {
     const double begin = basis_.domain_begin();
     const double end = basis_.domain_end();
     if (!(t >= begin && t <= end)) {
-      const std::string found = t == kFree ? "has no t" : "has t = " + NumberText(t);
+      const std::string found = t == kNotGiven ? "has no t" : "has t = " + NumberText(t);
       return Refuse(found + "; allowed: " + NumberText(begin) + " to " + NumberText(end));
     }
     t = basis_.Wrap(t);
     Functional functional;
-    functional.value.setConstant(fit_.dimension(), kFree);
-    if (!CheckOrder(order) || !GivenCoordinates(&functional.value)) return false;
-    if ((functional.value.array() == kFree).all()) {
+    functional.value.setConstant(fit_.dimension(), kNotGiven);
+    if (!CheckOrder(order) || !TakeCoordinates(&functional.value)) return false;
+    if ((functional.value.array() == kNotGiven).all()) {
       return Refuse("holds nothing; give at least one of x, y, z, w");
     }
     functional.name = spec_.ToString();
@@ -147,10 +138,10 @@ class Builder {
     if (bessel.has_value()) {
       *value = *bessel;
     } else {
-      value->setConstant(kFree);
+      value->setConstant(kNotGiven);
     }
-    if (!GivenCoordinates(value)) return false;
-    return (value->array() != kFree).all() ||
+    if (!TakeCoordinates(value)) return false;
+    return (value->array() != kNotGiven).all() ||
            Refuse("finds no Bessel tangent: all parameters are equal; give x, y, ... instead");
   }
 
@@ -194,7 +185,7 @@ class Builder {
   /// derivatives on short spans count like points.
   LinearConstraint Constraint(const Functional& functional, int c) const {
     LinearConstraint constraint;
-    constraint.name = functional.name + " (" + kCoordinates[c] + ")";
+    constraint.name = functional.name + " (" + kCoordinateNames[c] + ")";
     std::map<int, double> coefficients;
     double values[(kMaxDegree + 1) * kMaxOrder];
     for (const Functional::Part& part : functional.parts) {

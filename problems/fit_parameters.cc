@@ -2,7 +2,6 @@
 #include <string>
 
 #include "cost_functions/foot_feet.h"
-#include "cost_functions/ordered_parameters.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -29,12 +28,16 @@ bool FromString(const std::string& text, ParameterKind* kind) {
   return false;
 }
 
+OrderedParameters CurveFit::Order(const Eigen::VectorXd& t) const {
+  const int held = setting_.ends_held ? 1 : 0;
+  return OrderedParameters(t.segment(held, t.size() - 2 * held),
+                           spec_.closed ? basis_->domain_length() : 0.0);
+}
+
 Eigen::VectorXd CurveFit::OrderedIfKept(Eigen::VectorXd t) const {
   if (!setting_.keep_order) return t;
-  const int held = setting_.ends_held ? 1 : 0;
-  const auto count = t.size() - 2 * held;
-  t.segment(held, count) =
-      OrderedParameters(t.segment(held, count), spec_.closed ? basis_->domain_length() : 0.0).t;
+  const OrderedParameters order = Order(t);
+  t.segment(setting_.ends_held ? 1 : 0, order.t.size()) = order.t;
   return t;
 }
 

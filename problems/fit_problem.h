@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cost_functions/ordered_parameters.h"
 #include "cost_functions/term.h"
 #include "problems/data_set.h"
 #include "problems/problem.h"
@@ -78,6 +79,8 @@ class CurveFit {
   bool is_projected() const { return spec_.parameter_kind == ParameterKind::kProjected; }
   /// t_i at all variables x, in the domain: of projected ones the feet.
   Eigen::VectorXd Parameters(const Eigen::VectorXd& x) const;
+  /// With keep_order: the order of the variables t, but for ends that are held.
+  OrderedParameters Order(const Eigen::VectorXd& t) const;
   /// The parameters that go with the variables t: themselves, or those in order if that is kept.
   Eigen::VectorXd OrderedIfKept(Eigen::VectorXd t) const;
   int dimension() const { return static_cast<int>(data_.points.cols()); }

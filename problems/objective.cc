@@ -22,8 +22,6 @@ Objective::Objective(const Problem* problem, EvaluationMonitor* monitor, Options
       options_(options),
       num_variables_(problem->elimination().num_free(problem->num_variables())),
       view_(options.compile ? CurveView::Make(*problem, monitor) : nullptr),
-      keeps_order_(std::any_of(problem->terms().begin(), problem->terms().end(),
-                               [](const auto& term) { return term.family->keeps_order(); })),
       seats_(std::any_of(problem->terms().begin(), problem->terms().end(),
                          [](const auto& term) { return term.family->seats(); })),
       projects_(problem->curve_fit() != nullptr && problem->curve_fit()->is_projected()) {}
@@ -41,11 +39,14 @@ const FreeView* Objective::free_view() const {
   return free_view_.get();
 }
 
-void Objective::Seat(Eigen::VectorXd* x) const {
-  if (!seats_) return;
+bool Objective::Seat(Eigen::VectorXd* x) const {
+  if (!seats_) return false;
   Eigen::VectorXd all = Expand(*x);
   for (const Problem::TermInstance& term : problem_->terms()) term.family->Seat(&all);
-  *x = problem_->elimination().FreeVariables(all);
+  Eigen::VectorXd seated = problem_->elimination().FreeVariables(all);
+  const bool moves = seated != *x;
+  x->swap(seated);
+  return moves;
 }
 
 Eigen::VectorXd Objective::start() const {

@@ -55,12 +55,11 @@ class Objective {
   /// The structure of problems with free parameters; null for others. Made at the first call.
   const FreeView* free_view() const;
 
-  bool keeps_order() const { return keeps_order_; }  ///< Of free parameters.
   /// Whether a method is to call Seat at its iterates.
   bool seats() const { return seats_; }
   /// Moves x, at equal E, to where the gradient is 0 at minima over parameters in order and in the
-  /// domain only: BlockFamily::Seat.
-  void Seat(Eigen::VectorXd* x) const;
+  /// domain only: BlockFamily::Seat. False if x is there.
+  bool Seat(Eigen::VectorXd* x) const;
 
   /// Counts an evaluation at x that a library does itself, from problem().terms(). False: it must
   /// not be done, as after kStop.
@@ -95,7 +94,6 @@ class Objective {
   Options options_;
   int num_variables_;
   std::unique_ptr<CurveView> view_;
-  bool keeps_order_;
   bool seats_;
   bool projects_;  // parameters are projected
   Eigen::VectorXd projected_at_;

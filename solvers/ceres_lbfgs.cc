@@ -84,8 +84,8 @@ SolverInfo CeresLbfgsSolver::ClassInfo() {
 std::string CeresLbfgsSolver::WhyUnsupported(const Objective& objective) const {
   std::string why = WhyNoBounds(objective, "ceres_lbfgs");
   if (!why.empty()) return why;
-  if (objective.keeps_order())
-    return "ceres_lbfgs does not keep the points in their order; use lbfgs";
+  why = WhyNoOrder(objective.problem(), "ceres_lbfgs");
+  if (!why.empty()) return why;
   const std::string& form = options_.Word("form");
   if (form == "problem") {
     const CurveFit* fit = objective.problem().curve_fit();

@@ -167,8 +167,8 @@ std::optional<Outcome> LbfgsSolver::DoStep(Eigen::VectorXd* x) {
     return Outcome{StopReason::kLineSearchEnded, "no step along the gradient lowers E measurably"};
   }
   if (status != Status::kOk) return Ended(status);
-  if (objective()->seats()) {
-    objective()->Seat(&next_x_);
+  // Where it stays, E and g are known from the search.
+  if (objective()->Seat(&next_x_)) {
     status = objective()->EnergyAndGradient(next_x_, &next_energy_, &next_gradient_);
     if (status != Status::kOk) return Ended(status);
   }

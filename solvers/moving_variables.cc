@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "solvers/solver.h"
+
 namespace batten {
 namespace {
 
@@ -33,11 +35,8 @@ std::vector<int> PlacesInFree(const LinearElimination& elimination, int num_vari
 }  // namespace
 
 std::string WhyNoWindows(const Problem& problem, const std::string& solver_name) {
-  for (const Problem::TermInstance& term : problem.terms()) {
-    if (term.family->keeps_order()) {
-      return solver_name + " does not keep the points in their order; use lbfgs";
-    }
-  }
+  const std::string why_no_order = WhyNoOrder(problem, solver_name);
+  if (!why_no_order.empty()) return why_no_order;
   std::vector<char> moves(static_cast<std::size_t>(problem.num_variables()), 0);
   bool is_bounded = false;
   ForEachWindow(problem, problem.start(), [&](const BindingWindow& window) {

@@ -60,6 +60,15 @@ Outcome Solver::Minimize(Objective* objective, RunContext* context, Eigen::Vecto
   return DoMinimize(objective, context, x);
 }
 
+std::string WhyNoOrder(const Problem& problem, const std::string& solver_name) {
+  for (const Problem::TermInstance& term : problem.terms()) {
+    if (term.family->keeps_order()) {
+      return solver_name + " does not keep the points in their order; use lbfgs";
+    }
+  }
+  return "";
+}
+
 std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name) {
   if (objective.is_quadratic()) return "";
   if (!objective.options().compile) {

@@ -49,6 +49,8 @@ class Solver {
   virtual Outcome DoMinimize(Objective* objective, RunContext* context, Eigen::VectorXd* x) = 0;
 };
 
+/// `NAME does not keep the points in their order; use lbfgs` where that is asked for; else empty.
+std::string WhyNoOrder(const Problem& problem, const std::string& solver_name);
 /// Why `objective` has no curve view, as a sentence for WhyUnsupported; empty if it has one.
 std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name);
 /// `NAME ignores bounds; use ceres_lm` where the problem has bounds; otherwise empty.

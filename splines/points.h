@@ -11,6 +11,7 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 inline constexpr int kMaxDegree = 9;
 inline constexpr int kMaxOrder = kMaxDegree + 1;
 inline constexpr int kMaxDimension = 4;
+inline constexpr const char* kCoordinateNames[kMaxDimension] = {"x", "y", "z", "w"};
 
 }  // namespace batten
 
