@@ -8,13 +8,15 @@
 #include <sstream>
 
 #include "experiments/audit_curve.h"
+#include "experiments/audit_sums.h"
 
 namespace batten {
 namespace {
 
 using Real = AuditCurve::Real;
-constexpr Real kUnitRoundoff = 0x1p-53L;  // of double: half the distance from 1 to its neighbour
-constexpr int kMostCoordinates = 16;
+using Sums = AuditSums;
+constexpr int kMostCoordinates = AuditSums::kMostCoordinates;
+constexpr Real kUnitRoundoff = AuditSums::kUnitRoundoff;
 
 /// Root of |v|^2 + more_squares, without overflow where single squares do not overflow in long
 /// double.
@@ -23,27 +25,6 @@ double Norm(const std::vector<Real>& v, Real more_squares) {
   for (const Real value : v) sum += value * value;
   return static_cast<double>(std::sqrt(sum));
 }
-
-/// What is summed up over the points.
-struct Sums {
-  Real energy = 0;
-  Real squared_distance = 0;
-  Real largest = 0;
-  Real squared_rounding = 0;    // of the residuals: sum of w delta^2
-  std::vector<Real> gradient;   // n x d
-  std::vector<Real> rounding;   // its worst case, n x d
-  std::vector<int> num_points;  // that each control point moves, n
-  // The same of free parameters, which no two points share: their squares are summed up at once.
-  Real squared_slope = 0;           // of those that move
-  Real squared_pull = 0;            // of those past an end that E draws back into the domain
-  Real squared_slope_rounding = 0;  // of both
-  std::vector<Real> around;         // of the last points, in one with the first a period on
-  bool goes_around = false;
-  std::vector<std::vector<Real>> slopes;  // of each block of points that share one
-  // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
-  // which points near the user's origin may be far out.
-  Real extent[kMostCoordinates] = {};
-};
 
 void MeasureExtent(const AuditedFit& fit, Sums* sums) {
   for (int c = 0; c < fit.dimension; ++c) {
@@ -87,7 +68,7 @@ void AddPoint(const AuditedFit& fit, const Residual& residual, AuditCurve* curve
   const int d = fit.dimension;
   const Real weight = residual.weight;
   const std::vector<Real>& basis = curve->BasisValues();
-  for (int j = 0; j <= fit.degree; ++j) ++sums->num_points[curve->ControlPoint(j)];
+  for (int j = 0; j <= fit.degree; ++j) ++sums->num_summands[curve->ControlPoint(j)];
   Real squared = 0;
   for (int c = 0; c < d; ++c) {
     squared += residual.value[c] * residual.value[c];
@@ -213,7 +194,7 @@ AuditReport Audit(const AuditedFit& fit) {
   Sums sums;
   sums.gradient.assign(fit.control_points.size(), 0);
   sums.rounding.assign(fit.control_points.size(), 0);
-  sums.num_points.assign(curve.num_control_points(), 0);
+  sums.num_summands.assign(curve.num_control_points(), 0);
   if (!fit.parameter_blocks.empty()) sums.slopes.resize(fit.parameter_blocks.size());
   MeasureExtent(fit, &sums);
   for (int i = 0; i < m; ++i) {
@@ -222,11 +203,12 @@ AuditReport Audit(const AuditedFit& fit) {
     AddPoint(fit, residual, &curve, &sums);
     if (is_free) AddParameter(fit, i, residual, &curve, &sums);
   }
+  AddTermsBesidePoints(fit, &curve, &sums);
 
   AuditReport report;
   AddBlocks(&sums, &report);
-  report.num_points = m;
-  report.most_summands = *std::max_element(sums.num_points.begin(), sums.num_points.end());
+  report.num_summands = m + sums.num_places;
+  report.most_summands = *std::max_element(sums.num_summands.begin(), sums.num_summands.end());
   report.energy = static_cast<double>(sums.energy);
   report.gradient_norm = Norm(sums.gradient, sums.squared_slope);
   report.pull_norm = static_cast<double>(std::sqrt(sums.squared_pull));
@@ -258,7 +240,7 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
     return {false, "claims energy " + Number(claim.energy) + " and |g| " +
                        Number(claim.gradient_norm) + ", which is no result"};
   }
-  const double sum_rounding = report.num_points * static_cast<double>(kUnitRoundoff);
+  const double sum_rounding = report.num_summands * static_cast<double>(kUnitRoundoff);
   const double energy_allowed =
       kRoundings * (report.energy_floor + static_cast<double>(kUnitRoundoff) * report.energy) +
       sum_rounding * report.energy;

@@ -14,6 +14,21 @@ enum class ParameterState : char {
   kPastEnd  ///< Of an open curve: the run has it past an end, where E does not change with it.
 };
 
+/// A term: factor times the integral of |C^(k)(t)|^2 over the domain.
+struct AuditedIntegral {
+  int derivative = 2;  ///< k, 1 to the degree.
+  double factor = 1.0;
+  std::vector<double> span_factors;  ///< Of the spans that are not empty; none: all 1.
+};
+
+/// A term: factor * |C^(k)(t) - value|^2 at the begin or the end t of an open curve's domain.
+struct AuditedEnd {
+  bool at_end = false;
+  int derivative = 0;  ///< k, 0 to the degree.
+  double factor = 1.0;
+  std::vector<double> value;  ///< d
+};
+
 /// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code
 /// with the folder splines/.
 struct AuditedFit {
@@ -25,6 +40,8 @@ struct AuditedFit {
   std::vector<double> points;          // m x d
   std::vector<double> parameters;      // m
   std::vector<double> weights;         // m, or empty: all 1
+  std::vector<AuditedIntegral> integrals;
+  std::vector<AuditedEnd> ends;
   /// Of free parameters, m; empty: they are fixed. Those past an end are given as that end.
   std::vector<ParameterState> parameter_states;
   /// Where the order of free ones is kept: block of each point, in the order of the points but for
@@ -37,10 +54,9 @@ struct AuditedFit {
   double length = 1.0;
 };
 
-/// E, g and distances of a fit with the interpolation term, recomputed by de Boor's recursion in
-/// long double, point by point.
+/// E, g and distances of a fit, recomputed by de Boor's recursion in long double, point by point.
 struct AuditReport {
-  double energy = 0.0;  // sum of w |C(t) - Q|^2
+  double energy = 0.0;  // sum of w |C(t) - Q|^2, integrals and ends
   /// Of E with respect to the control points and, of free parameters, length * t of those that
   /// move.
   double gradient_norm = 0.0;
@@ -59,8 +75,8 @@ struct AuditReport {
   /// What the rounding of feet is worth in |g|: E falls along t by a slope that is not quite 0
   /// there, and t follows the control points or not.
   double foot_rounding = 0.0;
-  int num_points = 0;     // m
-  int most_summands = 0;  // largest number of points that one control point moves
+  int num_summands = 0;   // of E: m points and the places where other terms are evaluated
+  int most_summands = 0;  // largest number of them that one control point moves
 };
 AuditReport Audit(const AuditedFit& fit);
 /// Fills in foot_excess and foot_allowed: plain comparisons with points sampled on every span, as

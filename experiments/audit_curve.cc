@@ -18,7 +18,7 @@ AuditCurve::AuditCurve(const AuditedFit& fit)
   CHECK_EQ(fit.knots.size(), static_cast<std::size_t>(last_ + p_ + 2));
 }
 
-void AuditCurve::MoveTo(double parameter) {
+void AuditCurve::MoveTo(Real parameter) {
   const Real t = Wrapped(parameter);
   const double* u = fit_.knots.data();
   // The last span with u_s <= t that is not empty: the domain's end belongs to the span before.
@@ -75,10 +75,32 @@ const std::vector<AuditCurve::Real>& AuditCurve::DerivativeWeights() {
   return work_;
 }
 
-AuditCurve::Real AuditCurve::Wrapped(double t) const {
+void AuditCurve::DerivativeRow(int k, std::vector<Real>* row, std::vector<Real>* sizes) {
+  CHECK(k >= 0 && k <= p_);
+  Transpose(k);
+  *row = work_;
+  *sizes = work_;
+  for (int r = k; r >= 1; --r) {
+    std::vector<Real> lower(p_ + 1, 0);
+    std::vector<Real> lower_sizes(p_ + 1, 0);
+    for (int j = r; j <= p_; ++j) {
+      const int i = span_ - p_ + j;
+      const Real factor =
+          (p_ - r + 1) / (static_cast<Real>(fit_.knots[i + p_ - r + 1]) - fit_.knots[i]);
+      lower[j] += factor * (*row)[j];
+      lower[j - 1] -= factor * (*row)[j];
+      lower_sizes[j] += factor * (*sizes)[j];
+      lower_sizes[j - 1] += factor * (*sizes)[j];
+    }
+    *row = lower;
+    *sizes = lower_sizes;
+  }
+}
+
+AuditCurve::Real AuditCurve::Wrapped(Real t) const {
   const Real begin = domain_begin();
   const Real end = domain_end();
-  if (!fit_.periodic) return std::clamp(static_cast<Real>(t), begin, end);
+  if (!fit_.periodic) return std::clamp(t, begin, end);
   const Real turns = std::floor((t - begin) / (end - begin));
   return std::clamp(t - turns * (end - begin), begin, end);
 }

@@ -24,7 +24,7 @@ class AuditCurve {
   /// Moves to parameter t: finds the span and fills the table of ratios. A t on a knot belongs to
   /// the span that begins there (at the domain's end: to the one before), so that derivatives that
   /// jump there, of degree 1 or at multiple knots, are those to the right, as in the run.
-  void MoveTo(double parameter);
+  void MoveTo(Real parameter);
 
   /// Control point of local function j = 0..p.
   int ControlPoint(int j) const { return (span_ - p_ + j) % n_; }
@@ -39,8 +39,13 @@ class AuditCurve {
   /// index of P_j and B_j its function of degree p - 1. Entry 0 is 0.
   const std::vector<Real>& DerivativeWeights();
 
+  /// How much each of the p + 1 control points is worth in C^(k)(t), k = 0..p: the differences
+  /// Q_j^(r) = (p - r + 1) / (u_(i+p-r+1) - u_i) (Q_j^(r-1) - Q_(j-1)^(r-1)), r = 1..k, transposed.
+  /// `sizes`: the same with all signs alike, which roundings are relative to.
+  void DerivativeRow(int k, std::vector<Real>* row, std::vector<Real>* sizes);
+
  private:
-  Real Wrapped(double t) const;
+  Real Wrapped(Real t) const;
   /// Into work_: from what the points of level p are worth down to those of level `lowest`.
   void Transpose(int lowest);
 

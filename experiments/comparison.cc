@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/basins.h"
 #include "experiments/comparison_reference.h"
 #include "solvers/solver_registry.h"
 
@@ -48,6 +49,7 @@ class ProblemComparison {
   RunSpec FirstRunSpec() const;
   void MeasureTrace(ComparisonRow* row) const;
   void Measure(std::size_t solver);
+  void FindRowBasins();
   void CheckDistance(const ComparisonRow& row, ComparisonResult* result) const;
 
   const ComparisonSpec& spec_;
@@ -161,6 +163,7 @@ void ProblemComparison::Measure(std::size_t solver) {
   row.seconds = Median(times.all);
   row.times_cholesky = row.seconds / Median(cholesky_.all);
   row.unique_minimum = direct_.unique();
+  if (const CurveFit* fit = problem_.curve_fit()) row.parameter_kind = fit->spec().parameter_kind;
   row.gap = row.distance_to_direct = row.allowed_distance = kNan;
   if (!row.run.skipped.empty()) return;
   row.gap = direct_.Gap(row.run.x);
@@ -181,7 +184,23 @@ void ProblemComparison::CheckDistance(const ComparisonRow& row, ComparisonResult
       NumberText(row.allowed_distance));
 }
 
+/// Follows every end to the rounding floor, off the clock.
+void ProblemComparison::FindRowBasins() {
+  std::vector<ComparisonRow*> rows;
+  std::vector<BasinEnd> ends;
+  for (ComparisonRow& row : rows_) {
+    const bool has_end = !row.solver.empty() && row.run.skipped.empty() && row.run.x.allFinite();
+    if (!has_end || InterruptRequested()) continue;
+    rows.push_back(&row);
+    ends.push_back(Polish(problem_, row.run.x));
+  }
+  const std::vector<int> basins = FindBasins(problem_, ends);
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k]->basin = basins[k] + 1;
+}
+
 void ProblemComparison::AddTo(ComparisonResult* result) {
+  const CurveFit* const fit = problem_.curve_fit();
+  if (fit != nullptr && fit->spec().parameter_kind != ParameterKind::kFixed) FindRowBasins();
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     if (rows_[k].solver.empty()) continue;  // interrupted before its first run
     Measure(k);

@@ -3,12 +3,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/fit_report.h"
 #include "experiments/run.h"
 #include "problems/catalogue.h"
+#include "problems/fit_problem.h"
 
 namespace batten {
 
@@ -42,6 +44,11 @@ struct ComparisonRow {
   /// would need too much memory: by subtraction as far as that is no noise, NaN from there on.
   std::vector<double> excess_energies;
   FitReport report;
+  ParameterKind parameter_kind = ParameterKind::kFixed;
+  /// Of moving parameters: which minimum the end leads to, 1 being the one of least energy at foot
+  /// points that a run of this comparison on this problem leads to. Speed compares within one basin
+  /// only. None where parameters are fixed or nothing ran.
+  std::optional<int> basin;
 };
 
 struct ComparisonResult {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "cost_functions/options.h"
 #include "experiments/comparison_tables.h"
@@ -75,6 +76,30 @@ std::string SpreadOfAccuracy(const ComparisonResult& result, int problem) {
          "): these times do not compare";
 }
 
+/// Where ends lead to different minima: to which, and who leads there.
+std::string Basins(const ComparisonResult& result, int problem) {
+  std::map<int, std::string> solvers;
+  std::map<int, double> energies;
+  std::string name;
+  for (const ComparisonRow& row : result.rows) {
+    if (row.problem_index != problem || !row.basin.has_value()) continue;
+    name = row.problem;
+    std::string& text = solvers[*row.basin];
+    text += (text.empty() ? "" : " ") + row.solver;
+    const double energy = row.report.energy_at_foot_points;
+    const auto [place, is_new] = energies.emplace(*row.basin, energy);
+    if (!is_new) place->second = std::min(place->second, energy);
+  }
+  if (solvers.size() < 2) return "";
+  std::string text = name + ": " + std::to_string(solvers.size()) +
+                     " minima; times compare within one basin only:";
+  for (const auto& [basin, names] : solvers) {
+    text += (basin == solvers.begin()->first ? " " : "; ") + std::to_string(basin) +
+            " (E at feet " + ShortNumber(energies[basin], 7) + "): " + names;
+  }
+  return text;
+}
+
 /// What the solver had to say, with the observed rate beside a predicted one.
 std::string RowNote(const ComparisonRow& row) {
   std::string text;
@@ -103,6 +128,8 @@ std::vector<std::string> ComparisonNotes(const ComparisonResult& result) {
       if (row.problem_index == static_cast<int>(i)) unique = unique && row.unique_minimum;
     }
     notes.push_back(AboutProblem(*result.problems[i], result.minimum_energies[i], unique));
+    const std::string basins = Basins(result, static_cast<int>(i));
+    if (!basins.empty()) notes.push_back(basins);
     if (result.spec.run.mode == Mode::kNative) {
       const std::string spread = SpreadOfAccuracy(result, static_cast<int>(i));
       if (!spread.empty()) notes.push_back(spread);

@@ -4,6 +4,7 @@
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
 #include "experiments/comparison_tables.h"
+#include "problems/fit_problem.h"
 
 namespace batten {
 namespace {
@@ -20,6 +21,7 @@ void AddOutcome(const ComparisonRow& row, Json* json) {
   (*json)["verified"] = nullptr;
   if (row.report.audited) (*json)["verified"] = row.report.verdict.holds;
   (*json)["failure"] = row.report.verdict.failure;
+  (*json)["parameter_kind"] = ToString(row.parameter_kind);
 }
 
 void AddEffort(const ComparisonRow& row, Json* json) {
@@ -37,6 +39,15 @@ void AddEffort(const ComparisonRow& row, Json* json) {
   (*json)["seconds"] = row.seconds;
   (*json)["cpu_seconds"] = row.run.cpu_seconds;
   (*json)["times_cholesky"] = row.times_cholesky;
+}
+
+void AddShape(const ComparisonRow& row, Json* json) {
+  (*json)["energy_at_foot_points"] = row.report.energy_at_foot_points;
+  (*json)["basin"] = row.basin.has_value() ? Json(*row.basin) : Json(nullptr);
+  const std::optional<CurveShape>& shape = row.report.shape;
+  (*json)["length"] = shape.has_value() ? Json(shape->length) : Json(nullptr);
+  (*json)["turning"] = shape.has_value() ? Json(shape->turning) : Json(nullptr);
+  (*json)["num_free_loops"] = shape.has_value() ? Json(shape->num_free_loops) : Json(nullptr);
 }
 
 void AddAccuracy(const ComparisonRow& row, double minimum_energy, Json* json) {
@@ -57,6 +68,7 @@ void AddAccuracy(const ComparisonRow& row, double minimum_energy, Json* json) {
   (*json)["max"] = row.report.max;
   (*json)["rms_orthogonal"] = row.report.rms_orthogonal;
   (*json)["max_orthogonal"] = row.report.max_orthogonal;
+  AddShape(row, json);
   const double nan = std::nan("");
   (*json)["audit_energy"] = row.report.audited ? row.report.audit.energy : nan;
   (*json)["audit_gradient_norm"] = row.report.audited ? row.report.audit.gradient_norm : nan;

@@ -5,6 +5,7 @@
 
 #include "cost_functions/options.h"
 #include "experiments/short_number.h"
+#include "experiments/table_text.h"
 
 namespace batten {
 namespace {
@@ -16,7 +17,7 @@ struct Column {
   const char* latex;
 };
 
-constexpr std::array<Column, 16> kColumns = {{
+constexpr std::array<Column, 20> kColumns = {{
     {"", "problem", "problem", "problem"},
     {"", "solver", "solver", "solver"},
     {"claimed", "status", "status", "status"},
@@ -33,6 +34,10 @@ constexpr std::array<Column, 16> kColumns = {{
     {"", "|g|", "\\|g\\|", "$|g|$"},
     {"", "gap", "gap", "gap"},
     {"distance", "to direct", "distance to direct", "distance"},
+    {"E at", "feet", "E at foot points", "$E$ at feet"},
+    {"", "basin", "basin", "basin"},
+    {"", "length", "length", "length"},
+    {"free", "loops", "free loops", "loops"},
 }};
 constexpr std::size_t kNumNames = 2;  // problem, solver
 constexpr std::size_t kFirstNumber = 4;
@@ -56,6 +61,8 @@ std::string EnergyText(const RunResult& run) {
 Cells RowCells(const ComparisonRow& row) {
   const RunResult& run = row.run;
   if (!run.skipped.empty()) return {row.problem, row.solver, "skipped: " + run.skipped};
+  const bool moves = row.parameter_kind != ParameterKind::kFixed;
+  const std::optional<CurveShape>& shape = row.report.shape;
   const char* verified = !row.report.audited ? "-" : row.report.verdict.holds ? "yes" : "NO";
   return {row.problem,
           row.solver,
@@ -72,13 +79,38 @@ Cells RowCells(const ComparisonRow& row) {
           EnergyText(run),
           ShortNumber(run.gradient_norm, 2),
           ShortNumber(row.gap, 2),
-          ShortNumber(row.distance_to_direct, 2)};
+          ShortNumber(row.distance_to_direct, 2),
+          moves ? ShortNumber(row.report.energy_at_foot_points, 7) : "-",
+          row.basin.has_value() ? std::to_string(*row.basin) : "-",
+          moves && shape.has_value() ? ShortNumber(shape->length, 4) : "-",
+          moves && shape.has_value() ? std::to_string(shape->num_free_loops) : "-"};
 }
 
-std::vector<Cells> AllCells(const ComparisonResult& result) {
+/// The columns in which some row has a number, and the rows.
+struct Table {
+  std::vector<Column> columns;
+  std::vector<Cells> rows;
+
+  bool IsWhole(const Cells& row) const { return row.size() == columns.size(); }
+};
+
+Table MakeTable(const ComparisonResult& result) {
   std::vector<Cells> rows;
   for (const ComparisonRow& row : result.rows) rows.push_back(RowCells(row));
-  return rows;
+  Table table;
+  table.rows.resize(rows.size());
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    const bool is_shown =
+        c < kFirstNumber || std::any_of(rows.begin(), rows.end(), [c](const Cells& row) {
+          return row.size() == kColumns.size() && row[c] != "-";
+        });
+    if (!is_shown) continue;
+    table.columns.push_back(kColumns[c]);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      if (c < rows[r].size()) table.rows[r].push_back(rows[r][c]);
+    }
+  }
+  return table;
 }
 
 bool IsFirstOfProblem(const ComparisonResult& result, std::size_t row) {
@@ -97,13 +129,13 @@ std::size_t Total(const std::vector<std::size_t>& widths, std::size_t separator)
 }
 
 /// As wide as the cells, names shortened where the table would be too wide.
-std::vector<std::size_t> TextWidths(const std::vector<Cells>& rows, std::size_t* separator) {
+std::vector<std::size_t> TextWidths(const Table& table, std::size_t* separator) {
   std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    std::size_t width =
-        std::max(std::string(kColumns[c].top).size(), std::string(kColumns[c].bottom).size());
-    for (const Cells& row : rows) {
-      if (row.size() == kColumns.size() || c < kNumNames) width = std::max(width, row[c].size());
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const Column& column = table.columns[c];
+    std::size_t width = std::max(std::string(column.top).size(), std::string(column.bottom).size());
+    for (const Cells& row : table.rows) {
+      if (table.IsWhole(row) || c < kNumNames) width = std::max(width, row[c].size());
     }
     widths.push_back(width);
   }
@@ -122,7 +154,7 @@ std::string TextLine(const Cells& cells, const std::vector<std::size_t>& widths,
   std::string line;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (c > 0) line.append(separator, ' ');
-    if (c >= kNumNames && cells.size() < kColumns.size()) {
+    if (c >= kNumNames && cells.size() < widths.size()) {
       return Shortened(line + cells[c], kWidest);
     }
     const std::string text = Shortened(cells[c], widths[c]);
@@ -150,61 +182,13 @@ std::string Wrapped(const std::string& text) {
   return result + line + "\n";
 }
 
-std::string Replaced(const std::string& text,
-                     const std::vector<std::pair<char, std::string>>& replacements) {
-  std::string result;
-  for (const char c : text) {
-    const auto found = std::find_if(replacements.begin(), replacements.end(),
-                                    [c](const auto& pair) { return pair.first == c; });
-    result += found == replacements.end() ? std::string(1, c) : found->second;
-  }
-  return result;
-}
-
-std::string MarkdownText(const std::string& text) {
-  return Replaced(text, {{'|', "\\|"},
-                         {'\\', "\\\\"},
-                         {'<', "&lt;"},
-                         {'*', "\\*"},
-                         {'`', "\\`"},
-                         {'\n', " "},
-                         {'\r', " "}});
-}
-
-std::string LatexText(const std::string& text) {
-  return Replaced(text, {{'\\', "\\textbackslash{}"},
-                         {'_', "\\_"},
-                         {'&', "\\&"},
-                         {'%', "\\%"},
-                         {'#', "\\#"},
-                         {'$', "\\$"},
-                         {'{', "\\{"},
-                         {'}', "\\}"},
-                         {'^', "\\textasciicircum{}"},
-                         {'~', "\\textasciitilde{}"},
-                         {'|', "\\textbar{}"},
-                         {'<', "\\textless{}"},
-                         {'>', "\\textgreater{}"},
-                         {'\n', " "},
-                         {'\r', " "}});
-}
-
-/// 1.2e-10 as a power of ten.
-std::string LatexNumber(const std::string& text) {
-  const std::size_t exponent = text.find('e');
-  double value = 0.0;
-  if (exponent == std::string::npos || !ParseNumber(text, &value)) return LatexText(text);
-  return "$" + text.substr(0, exponent) + "\\cdot10^{" +
-         std::to_string(std::stoi(text.substr(exponent + 1))) + "}$";
-}
-
-std::string LatexLine(const Cells& cells) {
+std::string LatexLine(const Cells& cells, std::size_t num_columns) {
   std::string line;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (c > 0) line += " & ";
-    if (c >= kNumNames && cells.size() < kColumns.size()) {
-      line += "\\multicolumn{" + std::to_string(kColumns.size() - c) + "}{l}{" +
-              LatexText(cells[c]) + "}";
+    if (c >= kNumNames && cells.size() < num_columns) {
+      line +=
+          "\\multicolumn{" + std::to_string(num_columns - c) + "}{l}{" + LatexText(cells[c]) + "}";
     } else {
       line += c < kFirstNumber ? LatexText(cells[c]) : LatexNumber(cells[c]);
     }
@@ -215,12 +199,13 @@ std::string LatexLine(const Cells& cells) {
 }  // namespace
 
 std::string ComparisonText(const ComparisonResult& result) {
-  const std::vector<Cells> rows = AllCells(result);
+  const Table table = MakeTable(result);
+  const std::vector<Cells>& rows = table.rows;
   std::size_t separator = 2;
-  const std::vector<std::size_t> widths = TextWidths(rows, &separator);
+  const std::vector<std::size_t> widths = TextWidths(table, &separator);
   Cells top;
   Cells bottom;
-  for (const Column& column : kColumns) {
+  for (const Column& column : table.columns) {
     top.push_back(column.top);
     bottom.push_back(column.bottom);
   }
@@ -232,7 +217,7 @@ std::string ComparisonText(const ComparisonResult& result) {
   }
   text += "\n";
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const bool cut = rows[r].size() < kColumns.size() &&
+    const bool cut = !table.IsWhole(rows[r]) &&
                      Total({widths[0], widths[1], rows[r].back().size()}, separator) > kWidest;
     if (cut) text += Wrapped(rows[r][0] + ", " + rows[r][1] + ": " + rows[r][2]);
   }
@@ -241,15 +226,16 @@ std::string ComparisonText(const ComparisonResult& result) {
 }
 
 std::string ComparisonMarkdown(const ComparisonResult& result) {
+  const Table table = MakeTable(result);
   std::string text = "|";
   std::string rule = "|";
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    text += std::string(" ") + kColumns[c].whole + " |";
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    text += std::string(" ") + table.columns[c].whole + " |";
     rule += c < kFirstNumber ? " --- |" : " ---: |";
   }
   text += "\n" + rule + "\n";
-  for (Cells cells : AllCells(result)) {
-    cells.resize(kColumns.size());
+  for (Cells cells : table.rows) {
+    cells.resize(table.columns.size());
     text += "|";
     for (const std::string& cell : cells) text += " " + MarkdownText(cell) + " |";
     text += "\n";
@@ -260,20 +246,20 @@ std::string ComparisonMarkdown(const ComparisonResult& result) {
 }
 
 std::string ComparisonLatex(const ComparisonResult& result) {
+  const Table table = MakeTable(result);
   std::string text =
       "% Needs \\usepackage{booktabs}.\n"
       "\\begin{table*}\n\\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n"
       "\\begin{tabular}{" +
-      std::string(kFirstNumber, 'l') + std::string(kColumns.size() - kFirstNumber, 'r') +
+      std::string(kFirstNumber, 'l') + std::string(table.columns.size() - kFirstNumber, 'r') +
       "}\n\\toprule\n";
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    text += (c > 0 ? " & " : "") + std::string(kColumns[c].latex);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    text += (c > 0 ? " & " : "") + std::string(table.columns[c].latex);
   }
   text += " \\\\\n\\midrule\n";
-  const std::vector<Cells> rows = AllCells(result);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
     if (IsFirstOfProblem(result, r)) text += "\\midrule\n";
-    text += LatexLine(rows[r]);
+    text += LatexLine(table.rows[r], table.columns.size());
   }
   text += "\\bottomrule\n\\end{tabular}\n\n\\smallskip\n";
   for (const std::string& note : ComparisonNotes(result)) {

@@ -5,48 +5,27 @@
 #include <limits>
 #include <thread>
 
-#include "cost_functions/options.h"
+#include "experiments/audited_terms.h"
 #include "problems/free_view.h"
 #include "splines/closest_point.h"
 
 namespace batten {
 namespace {
 
-/// The term that is the distance from the data and nothing else.
-const char* DistanceTerm(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::kFree:
-      return "free_parameter";
-    case ParameterKind::kProjected:
-      return "foot_point";
-    default:
-      return "interpolation";
-  }
-}
-
-bool IsDistance(const Problem::TermInstance& term, const CurveFit& fit) {
-  NameSpec name;
-  std::string error;
-  return ParseNameSpec(term.name, &name, &error) &&
-         name.name == DistanceTerm(fit.spec().parameter_kind);
-}
-
 /// What the terms that are distances from the data together weigh.
 double DistanceWeight(const Problem& problem) {
   double weight = 0.0;
   for (const Problem::TermInstance& term : problem.terms()) {
-    if (IsDistance(term, *problem.curve_fit())) weight += term.family->weight();
+    if (IsDistanceTerm(term, *problem.curve_fit())) weight += term.family->weight();
   }
   return weight;
 }
 
-/// The audit knows distances from the data without loss, where no constraint holds more than
-/// parameters.
+/// Where no constraint holds more than parameters, and the audit knows all terms.
 bool AuditApplies(const Problem& problem) {
   const CurveFit& fit = *problem.curve_fit();
-  for (const Problem::TermInstance& term : problem.terms()) {
-    if (!IsDistance(term, fit) || term.family->loss() != nullptr) return false;
-  }
+  AuditedFit ignored;
+  if (DistanceWeight(problem) == 0.0 || !AddTermsBesideDistances(problem, &ignored)) return false;
   if (fit.spec().parameter_kind == ParameterKind::kFixed) return problem.elimination().trivial();
   return fit.setting().keep_order || FreeView::Make(problem) != nullptr;
 }
@@ -107,6 +86,7 @@ AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double
     plain.weights.resize(plain.parameters.size(), 1.0);
     for (double& weight : plain.weights) weight *= term_weight;
   }
+  AddTermsBesideDistances(problem, &plain);
   return plain;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "problems/fit_problem.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -118,6 +119,14 @@ void ReadReport(RowFields* fields, FitReport* report) {
   report->max = fields->Number("max");
   report->rms_orthogonal = fields->Number("rms_orthogonal");
   report->max_orthogonal = fields->Number("max_orthogonal");
+  report->energy_at_foot_points = fields->Number("energy_at_foot_points");
+  if (!fields->IsNull("num_free_loops")) {
+    CurveShape shape;
+    shape.length = fields->Number("length");
+    shape.turning = fields->Number("turning");
+    shape.num_free_loops = fields->Whole<int>("num_free_loops");
+    report->shape = shape;
+  }
   report->audited = !fields->IsNull("verified");
   report->verdict.holds = fields->Flag("verified", false);
   report->verdict.failure = fields->Text("failure");
@@ -151,6 +160,8 @@ bool ReadCell(const std::string& line, const std::string& problem, const NameSpe
   row->distance_to_direct = fields.Number("distance_to_direct");
   row->allowed_distance = fields.Number("allowed_distance");
   row->unique_minimum = fields.Flag("unique_minimum", true);
+  fields.Require(FromString(fields.Text("parameter_kind"), &row->parameter_kind));
+  if (!fields.IsNull("basin")) row->basin = fields.Whole<int>("basin");
   cell->minimum_energy = fields.Number("minimum_energy");
   if (!fields.IsNull("disagreement")) {
     cell->disagreement = fields.Text("disagreement");

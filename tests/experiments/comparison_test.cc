@@ -10,6 +10,7 @@
 #include <limits>
 #include <thread>
 
+#include "experiments/comparison_tables.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -18,6 +19,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -210,6 +212,42 @@ TEST(Compare, MeasuresAgainstCholeskyAlsoWithoutCompilation) {
   EXPECT_THAT(result.rows[0].run.skipped, HasSubstr("compil"));
   EXPECT_GT(result.rows[1].times_cholesky, 0.0);
   EXPECT_LT(result.rows[1].distance_to_direct, 1e-6);
+}
+
+// Curves that are one have one energy at their foot points; here those of different minima differ
+// by more than 1e-4 of it.
+TEST(Compare, TellsWhichMinimumARunLeadsTo) {
+  const ComparisonResult result = Compared(Spec("rhino_free", "newton,lm_schur,pdm,gim"));
+  ASSERT_EQ(result.rows.size(), 4u);
+  for (int k = 0; k < 3; ++k) ASSERT_TRUE(result.rows[k].basin.has_value()) << k;
+  EXPECT_FALSE(result.rows[3].basin.has_value());  // skipped
+  double least = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a) {
+    const ComparisonRow& row = result.rows[a];
+    least = std::min(least, row.report.energy_at_foot_points);
+    for (int b = 0; b < 3; ++b) {
+      const ComparisonRow& other = result.rows[b];
+      const double larger =
+          std::max(row.report.energy_at_foot_points, other.report.energy_at_foot_points);
+      const double apart =
+          std::abs(row.report.energy_at_foot_points - other.report.energy_at_foot_points);
+      EXPECT_EQ(row.basin == other.basin, apart < 1e-4 * larger) << row.solver << other.solver;
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    const bool is_best = result.rows[a].report.energy_at_foot_points < (1.0 + 1e-4) * least;
+    EXPECT_EQ(result.rows[a].basin == 1, is_best) << result.rows[a].solver;
+  }
+  EXPECT_THAT(ComparisonText(result), HasSubstr("minima; times compare within one basin only"));
+}
+
+TEST(Compare, ShowsNoColumnInWhichNoRowHasANumber) {
+  const std::string fixed = ComparisonText(Compared(Spec("rhino", "cg")));
+  EXPECT_THAT(fixed, HasSubstr("to direct"));
+  EXPECT_THAT(fixed, Not(HasSubstr("basin")));
+  const std::string free = ComparisonText(Compared(Spec("rhino_free", "newton")));
+  EXPECT_THAT(free, Not(HasSubstr("to direct")));
+  EXPECT_THAT(free, HasSubstr("  basin  length"));
 }
 
 TEST(Compare, StopsWhenInterrupted) {

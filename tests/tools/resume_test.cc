@@ -94,6 +94,21 @@ TEST_F(ResumedRows, AreTakenOverAsTheyStand) {
   EXPECT_EQ(json::parse(ReadFile(out_ + "/table.json"))["rows"][0]["cpu_seconds"], kMark);
 }
 
+TEST_F(ResumedRows, OfFreeParametersKeepTheirBasinAndShape) {
+  const std::vector<std::string> command = {
+      "compare",         "--problems=rhino_free", "--solvers=newton,gim",
+      "--repetitions=1", "--nofigures",           "--out=" + out_};
+  ASSERT_EQ(RunBatten(command).status, 0);
+  const std::string table = ReadFile(out_ + "/table.csv");
+  EXPECT_EQ(Row()["basin"], 1);
+  EXPECT_EQ(Row()["parameter_kind"], "free");
+  EXPECT_GT(Row()["length"], 0.0);
+  std::vector<std::string> again = command;
+  again.push_back("--resume");
+  ASSERT_EQ(RunBatten(again).status, 0);
+  EXPECT_EQ(ReadFile(out_ + "/table.csv"), table);  // times included
+}
+
 TEST_F(ResumedRows, ThatFailedTheirAuditGiveStatusThreeAgain) {
   ASSERT_EQ(Compare("--quiet").status, 0);
   json row = Row();

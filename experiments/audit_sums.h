@@ -1,0 +1,43 @@
+#ifndef BATTEN_EXPERIMENTS_AUDIT_SUMS_H_
+#define BATTEN_EXPERIMENTS_AUDIT_SUMS_H_
+
+#include <vector>
+
+#include "experiments/audit.h"
+#include "experiments/audit_curve.h"
+
+namespace batten {
+
+/// What the audit sums up over points and terms.
+struct AuditSums {
+  using Real = AuditCurve::Real;
+  /// Of double: half the distance from 1 to its neighbour.
+  static constexpr Real kUnitRoundoff = 0x1p-53L;
+  static constexpr int kMostCoordinates = 16;
+
+  Real energy = 0;
+  Real squared_distance = 0;
+  Real largest = 0;
+  Real squared_rounding = 0;    // of the residuals: sum of w delta^2
+  std::vector<Real> gradient;   // n x d
+  std::vector<Real> rounding;   // its worst case, n x d
+  std::vector<int> num_summands;  // of E that each control point moves, n
+  int num_places = 0;             // where terms beside the points are evaluated
+  // The same of free parameters, which no two points share: their squares are summed up at once.
+  Real squared_slope = 0;           // of those that move
+  Real squared_pull = 0;            // of those past an end that E draws back into the domain
+  Real squared_slope_rounding = 0;  // of both
+  std::vector<Real> around;         // of the last points, in one with the first a period on
+  bool goes_around = false;
+  std::vector<std::vector<Real>> slopes;  // of each block of points that share one
+  // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
+  // which points near the user's origin may be far out.
+  Real extent[kMostCoordinates] = {};
+};
+
+/// Adds the integrals and ends of `fit`.
+void AddTermsBesidePoints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_AUDIT_SUMS_H_

@@ -1,0 +1,106 @@
+#include "experiments/audited_terms.h"
+
+#include <cmath>
+#include <optional>
+
+#include "cost_functions/bessel_tangents.h"
+#include "cost_functions/end_options.h"
+#include "cost_functions/term.h"
+
+namespace batten {
+namespace {
+
+/// The term that is the distance from the data and nothing else.
+const char* DistanceTerm(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kFree:
+      return "free_parameter";
+    case ParameterKind::kProjected:
+      return "foot_point";
+    default:
+      return "interpolation";
+  }
+}
+
+bool Resolve(const Problem::TermInstance& term, NameSpec* name, OptionValues* options) {
+  const Term* registered = nullptr;
+  std::string error;
+  return ParseNameSpec(term.name, name, &error) &&
+         TermRegistry::Global().Resolve(*name, &registered, options, &error);
+}
+
+AuditedIntegral Integral(const CurveFit& fit, const OptionValues& options) {
+  AuditedIntegral integral;
+  integral.derivative = options.Integer("derivative");
+  integral.factor = options.Real("weight");
+  if (options.Word("units") == "scale_free") {
+    integral.factor *= std::pow(fit.basis().domain_length(), 2 * integral.derivative - 1);
+  }
+  integral.span_factors = fit.spec().span_weights;
+  return integral;
+}
+
+/// The factor of the residual.
+double Unit(const BsplineBasis& basis, int derivative, const OptionValues& options, bool at_end) {
+  if (derivative == 0) return 1.0;
+  if (options.Word("units") == "scale_free") return std::pow(basis.domain_length(), derivative);
+  if (derivative == 2) return 1.0;
+  const std::vector<double>& knots = basis.knots();
+  const auto span = static_cast<std::size_t>(at_end ? basis.last_span() : basis.first_span());
+  return (knots[span + 1] - knots[span]) / basis.degree();
+}
+
+AuditedEnd End(const CurveFit& fit, int derivative, const OptionValues& options, bool at_end) {
+  std::optional<Eigen::RowVectorXd> value;
+  if (derivative == 0) value = EndDatum(fit.setting(), at_end);
+  if (derivative == 1) value = BesselTangent(fit.setting(), at_end);
+  AuditedEnd end;
+  end.at_end = at_end;
+  end.derivative = derivative;
+  const double unit = Unit(fit.basis(), derivative, options, at_end);
+  end.factor = options.Real("weight") * unit * unit;
+  Eigen::RowVectorXd given;
+  std::string beyond;
+  GivenCoordinates(options, fit.dimension(), &given, &beyond);
+  for (int c = 0; c < fit.dimension(); ++c) {
+    const double otherwise = value.has_value() ? (*value)[c] : 0.0;
+    end.value.push_back(given[c] == kNotGiven ? otherwise : given[c]);
+  }
+  return end;
+}
+
+}  // namespace
+
+bool IsDistanceTerm(const Problem::TermInstance& term, const CurveFit& fit) {
+  NameSpec name;
+  std::string error;
+  return ParseNameSpec(term.name, &name, &error) &&
+         name.name == DistanceTerm(fit.spec().parameter_kind);
+}
+
+bool AddTermsBesideDistances(const Problem& problem, AuditedFit* plain) {
+  const CurveFit& fit = *problem.curve_fit();
+  for (const Problem::TermInstance& term : problem.terms()) {
+    if (term.family->loss() != nullptr) return false;
+    if (IsDistanceTerm(term, fit)) continue;
+    NameSpec name;
+    OptionValues options;
+    if (!Resolve(term, &name, &options)) return false;
+    if (name.name == "fairing") {
+      plain->integrals.push_back(Integral(fit, options));
+      continue;
+    }
+    int derivative = -1;
+    if (name.name == "end_point") derivative = 0;
+    if (name.name == "end_tangent") derivative = 1;
+    if (name.name == "end_curvature") derivative = 2;
+    if (derivative < 0) return false;
+    for (const bool at_end : {false, true}) {
+      if (options.Word("end") == (at_end ? "begin" : "end")) continue;
+      plain->ends.push_back(End(fit, derivative, options, at_end));
+    }
+  }
+  return true;
+}
+
+}  // namespace batten
