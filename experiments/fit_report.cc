@@ -44,6 +44,7 @@ double DistanceWeight(const Problem& problem) {
 /// parameters.
 bool AuditApplies(const Problem& problem) {
   const CurveFit& fit = *problem.curve_fit();
+  if (problem.nonlinear_constraints() != nullptr) return false;
   for (const Problem::TermInstance& term : problem.terms()) {
     if (!IsDistance(term, fit) || term.family->loss() != nullptr) return false;
   }

@@ -56,10 +56,9 @@ struct Case {
 
 /// The term's energy of a polynomial curve on uniform knots, the data of size 1.
 double EnergyOf(const Case& fit, const std::vector<std::vector<double>>& coordinates) {
-  const BsplineBasis basis =
-      BasisOf(fit.degree, false,
-              UniformKnots(fit.degree, fit.degree + fit.spans, EndKnots::kEndInterpolating,
-                           fit.begin, fit.end));
+  const BsplineBasis basis = BasisOf(fit.degree, false,
+                                     UniformKnots(fit.degree, fit.degree + fit.spans,
+                                                  EndKnots::kEndInterpolating, fit.begin, fit.end));
   FitSetting setting;
   setting.basis = &basis;
   setting.dimension = static_cast<int>(coordinates.size());
@@ -125,10 +124,8 @@ TEST(CurveFairing, OfTheRuleConvergesWithTwiceTheNumberOfItsPoints) {
 TEST(CurveFairing, DoesNotDependOnTheParameter) {
   // t = v + v^2 / 4 from v = 0 to 1: the same stretch of the parabola, of degree 4 in v.
   for (const bool variation : {false, true}) {
-    const double expected =
-        ParabolaPrimitive(variation, 1.25) - ParabolaPrimitive(variation, 0.0);
-    const std::vector<std::vector<double>> curve = {{0, 1, 0.25},
-                                                    {0, 0, 0.5, 0.25, 0.03125}};
+    const double expected = ParabolaPrimitive(variation, 1.25) - ParabolaPrimitive(variation, 0.0);
+    const std::vector<std::vector<double>> curve = {{0, 1, 0.25}, {0, 0, 0.5, 0.25, 0.03125}};
     const std::string options = Measure(variation) + "/points=24";
     EXPECT_NEAR(EnergyOf({4, 3, 0.0, 1.0, options}, curve), expected, 1e-11);
     EXPECT_NEAR(EnergyOf({6, 2, 0.0, 1.0, options}, curve), expected, 1e-10);
@@ -146,8 +143,8 @@ TEST(CurveFairing, OfATwistedCubicIsItsKnownIntegral) {
   //   sum(w(i)*f(i*h,v) for i in range(n+1))*h/3  for v in (False, True)
   const std::vector<std::vector<double>> curve = {{0, 1}, {0, 0, 1}, {0, 0, 0, 1}};
   EXPECT_NEAR(EnergyOf({3, 6, 0.0, 1.0, "/points=24"}, curve), 1.8284269633113872, 1e-10);
-  EXPECT_NEAR(EnergyOf({3, 6, 0.0, 1.0, "/points=24/measure=variation"}, curve),
-              10.725750898712306, 1e-9);
+  EXPECT_NEAR(EnergyOf({3, 6, 0.0, 1.0, "/points=24/measure=variation"}, curve), 10.725750898712306,
+              1e-9);
 }
 
 /// A closed spline with n control points on a circle is a circle too but for its other frequencies,
