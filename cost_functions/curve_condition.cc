@@ -166,7 +166,8 @@ class CurveConditionFamily::Cost final : public ceres::CostFunction {
       gradient[local.places[v]] += local.gradient[v];
     }
     for (std::size_t k = 0; k < sizes.size(); ++k) {
-      if (jacobians[k] != nullptr) std::copy_n(gradient.data() + offsets_[k], sizes[k], jacobians[k]);
+      if (jacobians[k] != nullptr)
+        std::copy_n(gradient.data() + offsets_[k], sizes[k], jacobians[k]);
     }
     return true;
   }

@@ -11,8 +11,8 @@
 
 namespace batten {
 
-/// One number h that is to be zero (or not negative) at one parameter t of the curve, which is given
-/// or a variable.
+/// One number h that is to be zero (or not negative) at one parameter t of the curve, which is
+/// given or a variable.
 struct CurveCondition {
   enum class Kind {
     kDirection,  ///< h = direction . C^(order)(t) - value

@@ -71,8 +71,8 @@ Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorX
   return matrix.completeOrthogonalDecomposition().solve(right);
 }
 
-/// Parameters of constraints where they start, inside the domain: past its ends nothing changes with
-/// them.
+/// Parameters of constraints where they start, inside the domain: past its ends nothing changes
+/// with them.
 void PlaceInside(const Problem& problem, Eigen::VectorXd* x) {
   for (const VariableRange& range : problem.ranges()) {
     if (range.name != kConstraintParameters) continue;
@@ -130,7 +130,8 @@ bool MakeLagrangianGradient(const Problem& problem, const Eigen::VectorXd& x,
     // An inequality that would have to pull does not hold x: the worst of them is let go.
     int worst = -1;
     for (int i = 0; i < lambda.size(); ++i) {
-      const bool pulls = constraints.is_inequality(held[static_cast<std::size_t>(i)]) && lambda[i] > 0.0;
+      const bool pulls =
+          constraints.is_inequality(held[static_cast<std::size_t>(i)]) && lambda[i] > 0.0;
       if (pulls && (worst < 0 || lambda[i] > lambda[worst])) worst = i;
     }
     if (worst < 0) {

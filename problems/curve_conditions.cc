@@ -199,9 +199,8 @@ bool MakeCurveConditions(const std::vector<NameSpec>& specs, const CurveFit& fit
       own.push_back(made->conditions[k]);
       made->conditions[k].parameter_variable = num_variables + static_cast<int>(place);
     }
-    made->start[place++] = parameter.start != kNotGiven
-                               ? parameter.start
-                               : BestPlace(fit, own, control_points);
+    made->start[place++] =
+        parameter.start != kNotGiven ? parameter.start : BestPlace(fit, own, control_points);
   }
   return true;
 }

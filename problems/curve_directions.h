@@ -9,8 +9,8 @@ namespace batten {
 /// Unit vectors, perpendicular to each other and to `direction`, which is not zero.
 inline std::vector<Eigen::VectorXd> NormalsOf(const Eigen::VectorXd& direction) {
   const auto d = direction.size();
-  const Eigen::MatrixXd q = Eigen::MatrixXd(direction).householderQr().householderQ() *
-                            Eigen::MatrixXd::Identity(d, d);
+  const Eigen::MatrixXd q =
+      Eigen::MatrixXd(direction).householderQr().householderQ() * Eigen::MatrixXd::Identity(d, d);
   std::vector<Eigen::VectorXd> normals;
   for (Eigen::Index k = 1; k < d; ++k) normals.emplace_back(q.col(k));
   return normals;

@@ -78,24 +78,28 @@ class RoundContext final : public RunContext {
 };
 
 /// Brings parameters of constraints that are past an end of the curve, where h does not change with
-/// them, back inside: the point that is looked for may be reached by bending the curve.
-void BringInside(const Objective& objective, Eigen::VectorXd* x) {
+/// them, back inside: the point that is looked for may be reached by bending the curve. False if
+/// none is.
+bool BringInside(const Objective& objective, Eigen::VectorXd* x) {
   constexpr double kInside = 0.1;  // of the domain
   const Problem& problem = objective.problem();
   Eigen::VectorXd all = objective.Expand(*x);
+  bool any = false;
   for (const VariableRange& range : problem.ranges()) {
     if (range.name != kConstraintParameters) continue;
     const BsplineBasis& basis = problem.curve_fit()->basis();
     for (double& t : all.segment(range.begin, range.size)) {
       if (PlaceOnCurve(basis, t).moves) continue;
+      any = true;
       const double inside = kInside * basis.domain_length();
       t = t < basis.domain_begin() ? basis.domain_begin() + inside : basis.domain_end() - inside;
     }
   }
   *x = problem.elimination().FreeVariables(all);
+  return any;
 }
 
-constexpr char kPenaltyName[] = "constraints";
+constexpr char kPenaltyName[] = "the penalty of the constraints";
 constexpr double kRaise = 10.0;
 constexpr int kMostRaises = 8;
 constexpr int kMostRounds = 200;
@@ -163,8 +167,8 @@ Outcome AugmentedLagrangianSolver::DoMinimize(Objective* objective, RunContext* 
     context->Note("rounds of the multipliers", std::to_string(round + 1));
     return *outcome;
   }
-  return {StopReason::kStalled, "the multipliers still change after " +
-                                    std::to_string(kMostRounds) + " rounds"};
+  return {StopReason::kStalled,
+          "the multipliers still change after " + std::to_string(kMostRounds) + " rounds"};
 }
 
 std::optional<Outcome> AugmentedLagrangianSolver::Round(Objective* objective, RunContext* context,
@@ -205,7 +209,9 @@ std::optional<Outcome> AugmentedLagrangianSolver::Round(Objective* objective, Ru
                          NumberText(missed.largest * problem.units().length)};
     }
     if (progress->raises <= kMostRaises) multipliers->Raise(kRaise);
-    if (!meets) BringInside(*objective, x);
+    if (!meets && BringInside(*objective, x) && context->Iterate(*x) != Status::kOk) {
+      return Outcome{context->stop_reason(), ""};
+    }
   }
   if (meets && progress->idle_rounds >= kMostIdleRounds) {
     return Outcome{StopReason::kLineSearchEnded,

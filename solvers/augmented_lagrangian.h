@@ -22,7 +22,7 @@ class AugmentedLagrangianSolver final : public Solver {
  private:
   /// What the rounds have come to.
   struct Progress {
-    double violation = 0.0;      // where the base ended
+    double violation = 0.0;       // where the base ended
     double least_gradient = 0.0;  // of the Lagrangian, at points that meet the constraints
     int raises = 0;
     int idle_rounds = 0;

@@ -87,8 +87,9 @@ TEST(NonlinearConstraints, ALeastSquaresLineOfGivenDirectionIsTheClosedForm) {
   const Eigen::Vector2d u = Eigen::Vector2d(2, 1).normalized();
   for (const bool other_way : {false, true}) {
     const auto problem = MakeFit(
-        DataOf(q, t), Constrained(1, 2, other_way ? "tangent/t=0.4/x=-2/y=-1/least=0.01"
-                                                  : "tangent/t=0.4/x=2/y=1"));
+        DataOf(q, t),
+        Constrained(1, 2,
+                    other_way ? "tangent/t=0.4/x=-2/y=-1/least=0.01" : "tangent/t=0.4/x=2/y=1"));
     const double size = problem->curve_fit()->size();
     const DirectedLine line(q, t, other_way ? Eigen::Vector2d(-u) : u, 0.01 * size);
     for (const char* solver : {"augmented_lagrangian:lbfgs", "augmented_lagrangian:ceres_lm"}) {
@@ -173,9 +174,9 @@ void ExpectFinds(const Cubic& p, const Points& data, const Eigen::VectorXd& t,
     SCOPED_TRACE(solver);
     const RunResult run = Solve(*problem, solver);
     // Ceres compares values of E only, and ends where their roundings do.
-    const bool reached = IsSuccess(run.outcome.reason) ||
-                         (run.outcome.reason == StopReason::kLineSearchEnded &&
-                          run.gradient_norm <= 1e-6 * run.start_gradient_norm);
+    const bool reached =
+        IsSuccess(run.outcome.reason) || (run.outcome.reason == StopReason::kLineSearchEnded &&
+                                          run.gradient_norm <= 1e-6 * run.start_gradient_norm);
     EXPECT_TRUE(reached) << ToString(run.outcome.reason) << " " << run.outcome.message;
     const Cubic found = problem->curve_fit()->ControlPoints(run.x);
     EXPECT_LE((found - p).cwiseAbs().maxCoeff(), 1e-6 * size);
@@ -207,8 +208,7 @@ TEST(NonlinearConstraints, GivenCurvatureIsMetAtTheLeastEnergy) {
     const std::function<double(const Cubic&, double)> h = [kappa](const Cubic& at, double t) {
       return CurvatureAt(at, t) - kappa;
     };
-    const Points data =
-        DataFor(p, 0.3, false, kPlaces, {h}, Eigen::VectorXd::Constant(1, 0.4));
+    const Points data = DataFor(p, 0.3, false, kPlaces, {h}, Eigen::VectorXd::Constant(1, 0.4));
     ExpectFinds(p, data, kPlaces, "curvature/t=0.3/kappa=" + NumberText(kappa), h, 0.3);
   }
 }
@@ -225,8 +225,9 @@ TEST(NonlinearConstraints, APointIsPassedAtAParameterThatIsFound) {
     }
     const Eigen::VectorXd lambda = Eigen::Vector3d(0.3, -0.2, 0.25).head(p.cols());
     const Points data = DataFor(p, s, true, kPlaces, h, lambda);
-    ExpectFinds(p, data, kPlaces, constraint,
-                [q](const Cubic& at, double t) { return (CubicAt(at, t)[0] - q).norm(); }, s);
+    ExpectFinds(
+        p, data, kPlaces, constraint,
+        [q](const Cubic& at, double t) { return (CubicAt(at, t)[0] - q).norm(); }, s);
   }
 }
 
@@ -248,15 +249,16 @@ TEST(NonlinearConstraints, OfOneNumberHoldAtOneParameter) {
   const Points data = DataFor(p, s, true, kPlaces, h, Eigen::Vector4d(0.2, -0.1, 0.02, 0.1));
   const std::string place = "/x=" + NumberText(q[0]) + "/y=" + NumberText(q[1]);
   const std::string direction = "/x=" + NumberText(u[0]) + "/y=" + NumberText(u[1]);
-  ExpectFinds(p, data, kPlaces,
-              "point/free=7" + place + ",tangent/free=7" + direction +
-                  ",curvature/free=7/kappa=" + NumberText(kappa),
-              [&](const Cubic& at, double t) {
-                double largest = 0.0;
-                for (const auto& one : h) largest = std::max(largest, std::abs(one(at, t)));
-                return largest;
-              },
-              s);
+  ExpectFinds(
+      p, data, kPlaces,
+      "point/free=7" + place + ",tangent/free=7" + direction +
+          ",curvature/free=7/kappa=" + NumberText(kappa),
+      [&](const Cubic& at, double t) {
+        double largest = 0.0;
+        for (const auto& one : h) largest = std::max(largest, std::abs(one(at, t)));
+        return largest;
+      },
+      s);
 }
 
 TEST(NonlinearConstraints, StandBesideLinearOnesWhichStayEliminated) {
@@ -267,9 +269,11 @@ TEST(NonlinearConstraints, StandBesideLinearOnesWhichStayEliminated) {
   for (int i = 0; i < 12; ++i) {
     data.row(i) = CubicAt(p, kPlaces[i])[0].transpose() + 0.1 * RandomPoints(1, 2, &random);
   }
-  const auto problem = MakeFit(
-      DataOf(data, kPlaces), Constrained(3, 4, "point/t=0/x=0.1/y=0.2,derivative/t=1/y=-6.5,"
-                                               "curvature/t=0.5/kappa=" + NumberText(1.5 * kappa)));
+  const auto problem =
+      MakeFit(DataOf(data, kPlaces), Constrained(3, 4,
+                                                 "point/t=0/x=0.1/y=0.2,derivative/t=1/y=-6.5,"
+                                                 "curvature/t=0.5/kappa=" +
+                                                     NumberText(1.5 * kappa)));
   RunSpec spec;
   spec.keep_iterates = true;
   const RunResult run = Solve(*problem, "augmented_lagrangian:lbfgs", spec);
@@ -288,7 +292,8 @@ TEST(NonlinearConstraints, RunControlCountsAllRoundsAndTheTraceShowsWhatIsMissed
   const Cubic p = PlaneCubic();
   Points data(12, 2);
   for (int i = 0; i < 12; ++i) data.row(i) = CubicAt(p, kPlaces[i])[0].transpose();
-  const auto problem = MakeFit(DataOf(data, kPlaces), Constrained(3, 4, "curvature/t=0.5/kappa=-2"));
+  const auto problem =
+      MakeFit(DataOf(data, kPlaces), Constrained(3, 4, "curvature/t=0.5/kappa=-2"));
   const RunResult whole = Solve(*problem, "augmented_lagrangian:lbfgs");
   ASSERT_TRUE(IsSuccess(whole.outcome.reason));
   EXPECT_EQ(static_cast<int>(whole.trace.size()), whole.iterations + 1);
@@ -299,8 +304,8 @@ TEST(NonlinearConstraints, RunControlCountsAllRoundsAndTheTraceShowsWhatIsMissed
     before = whole.trace[k].counts.energy_calls;
     // A gradient of the Lagrangian that is small is no end while the constraint is missed.
     if (k + 1 < whole.trace.size()) {
-      EXPECT_TRUE(whole.trace[k].violation > kHeld || whole.trace[k].gradient_norm >
-                                                          1e-10 * whole.start_gradient_norm);
+      EXPECT_TRUE(whole.trace[k].violation > kHeld ||
+                  whole.trace[k].gradient_norm > 1e-10 * whole.start_gradient_norm);
     }
   }
   EXPECT_GT(whole.trace.front().violation, 0.1);
@@ -322,8 +327,7 @@ TEST(NonlinearConstraints, ThatCannotBeMetEndAsInfeasible) {
   Points data = RandomPoints(12, 2, &random);
   data.row(0) << 0.0, 0.0;
   data.row(11) << 1.0, 2.0;
-  const auto problem =
-      MakeFit(DataOf(data, kPlaces), Constrained(1, 2, "ends,point/free=1/x=5"));
+  const auto problem = MakeFit(DataOf(data, kPlaces), Constrained(1, 2, "ends,point/free=1/x=5"));
   const RunResult run = Solve(*problem, "augmented_lagrangian:lbfgs");
   EXPECT_EQ(run.outcome.reason, StopReason::kInfeasible);
   EXPECT_THAT(run.outcome.message, HasSubstr("constraint point/free=1/x=5, which is missed by "));
@@ -373,7 +377,8 @@ TEST(NonlinearConstraints, ThatTheCurveCannotMeetAreRefused) {
             "constraint point/free=1 holds nothing; give at least one of x, y, z, w");
   EXPECT_EQ(WhyNot(Constrained(3, 8, "point/free=1/z=1")),
             "constraint point/free=1/z=1 gives z, but the data have dimension 2");
-  EXPECT_THAT(WhyNot(Constrained(3, 8, "point/free=100/x=1")), HasSubstr("allowed: 0 to 99"));
+  EXPECT_THAT(WhyNot(Constrained(3, 8, "point/free=100/x=1")),
+              HasSubstr("must be an integer, 0 to 99"));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-
 #include <cmath>
 
 #include "cost_functions/cost_function_family.h"
@@ -99,11 +98,11 @@ Problem PlaneProblem(bool is_inequality) {
   return problem;
 }
 
-/// The minimum of the augmented Lagrangian, a quadratic while the constraint holds, by Newton's steps:
-/// the second mends what the differences behind Hessian products leave of the first.
+/// The minimum of the augmented Lagrangian, a quadratic while the constraint holds, by Newton's
+/// steps: the second mends what the differences behind Hessian products leave of the first.
 Eigen::VectorXd Minimum(const Problem& problem, const Multipliers& multipliers) {
-  const Problem augmented = problem.WithPenalty(
-      "plane", multipliers.MakePenalty(*problem.nonlinear_constraints()));
+  const Problem augmented =
+      problem.WithPenalty("plane", multipliers.MakePenalty(*problem.nonlinear_constraints()));
   Objective objective(&augmented, nullptr);
   // From the side where it holds.
   Eigen::Vector3d x = -10.0 * Eigen::Vector3d(kNormal[0], kNormal[1], kNormal[2]);
