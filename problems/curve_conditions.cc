@@ -63,7 +63,7 @@ class ConditionBuilder {
                   std::to_string(fit_.dimension()));
   }
 
-  bool AddPoint(CurveCondition condition, std::vector<CurveCondition>* conditions) const {
+  bool AddPoint(const CurveCondition& condition, std::vector<CurveCondition>* conditions) const {
     Eigen::RowVectorXd given;
     if (!GiveCoordinates(&given)) return false;
     bool any = false;

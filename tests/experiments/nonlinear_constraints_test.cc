@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "experiments/basins.h"
 #include "experiments/fit_report.h"
 #include "experiments/run.h"
 #include "problems/constraint_projection.h"
@@ -319,6 +320,20 @@ TEST(NonlinearConstraints, RunControlCountsAllRoundsAndTheTraceShowsWhatIsMissed
     EXPECT_EQ(cut.trace[static_cast<std::size_t>(k)].energy,
               whole.trace[static_cast<std::size_t>(k)].energy);
   }
+}
+
+TEST(NonlinearConstraints, KeepAnEndThatNewtonDoesNotPolishAsItIs) {
+  const Cubic p = PlaneCubic();
+  Points data(12, 2);
+  for (int i = 0; i < 12; ++i) data.row(i) = CubicAt(p, kPlaces[i])[0].transpose();
+  const auto problem =
+      MakeFit(DataOf(data, kPlaces), Constrained(3, 4, "curvature/t=0.5/kappa=-2"));
+  const RunResult run = Solve(*problem, "augmented_lagrangian:lbfgs");
+  const BasinEnd end = Polish(*problem, run.x);
+  EXPECT_FALSE(end.polished);
+  EXPECT_GT(end.energy, 0.0);
+  EXPECT_NEAR(end.energy, run.energy, 1e-14 * run.energy);
+  EXPECT_EQ(end.control_points, problem->curve_fit()->ControlPoints(run.x));
 }
 
 TEST(NonlinearConstraints, ThatCannotBeMetEndAsInfeasible) {

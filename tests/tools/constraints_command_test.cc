@@ -101,6 +101,14 @@ TEST(FitCommand, TakesTheTermCurveFairing) {
                                   kBow);
     EXPECT_EQ(ended.status, 0) << solver << ended.err;
   }
+  for (const auto& [kind, distance] :
+       {std::pair("free", "free_parameter"), std::pair("projected", "foot_point")}) {
+    const Ended ended = RunBatten(
+        {"fit", "-", "--control_points=8", "--parameter_kind=" + std::string(kind),
+         "--terms=" + std::string(distance) + ",curve_fairing/weight=1e-3", "--solver=lbfgs"},
+        kBow);
+    EXPECT_EQ(ended.status, 0) << kind << ended.err;
+  }
   ExpectRefused(RunBatten({"fit", "-", "--control_points=8", "--terms=interpolation,curve_fairing",
                            "--solver=newton"},
                           kBow),
