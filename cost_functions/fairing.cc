@@ -2,20 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "cost_functions/functor_family.h"
-#include "splines/gauss_legendre.h"
+#include "cost_functions/gauss_sites.h"
 
 namespace batten {
 namespace {
-
-/// What sites point into.
-struct Quadrature {
-  std::vector<double> parameters;
-  std::vector<double> weights;
-};
 
 /// L^(2k - 1), L the length of the domain: d^k C / dv^k = L^k C^(k) for v = u / L, and dv = du / L.
 double ScaleFreeFactor(const BsplineBasis& basis, int derivative) {
@@ -97,29 +89,8 @@ template <int kDerivative>
 std::shared_ptr<const Sites> FairingResidual<kDerivative>::MakeSites(
     const FitSetting& setting) const {
   const BsplineBasis& basis = *setting.basis;
-  const GaussRule rule = GaussLegendreRule(basis.degree() - kDerivative + 1);
   const double factor = scale_free ? ScaleFreeFactor(basis, kDerivative) : 1.0;
-  auto quadrature = std::make_shared<Quadrature>();
-  auto sites = std::make_shared<Sites>();
-  for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
-    const double begin = basis.knots()[static_cast<std::size_t>(span)];
-    const double length = basis.knots()[static_cast<std::size_t>(span) + 1] - begin;
-    if (!(length > 0.0)) continue;
-    const auto first = static_cast<int>(quadrature->parameters.size());
-    const double of_span = setting.span_weights == nullptr
-                               ? factor
-                               : factor * (*setting.span_weights)[sites->groups.size()];
-    for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
-      quadrature->parameters.push_back(begin + 0.5 * (1.0 + rule.nodes[g]) * length);
-      quadrature->weights.push_back(0.5 * rule.weights[g] * length * of_span);
-    }
-    sites->groups.push_back({span, first, static_cast<int>(quadrature->parameters.size())});
-  }
-  sites->size = static_cast<int>(quadrature->parameters.size());
-  sites->parameters = quadrature->parameters.data();
-  sites->weights = quadrature->weights.data();
-  sites->storage = std::move(quadrature);
-  return sites;
+  return MakeGaussSites(setting, basis.degree() - kDerivative + 1, factor);
 }
 
 std::unique_ptr<Term> MakeFairingTerm() { return std::make_unique<FairingTerm>(); }

@@ -15,9 +15,10 @@
 namespace batten {
 
 /// One residual functor at one site whose parameter t is a variable: its derivatives by the p + 1
-/// control points of the span that t is in now (variables j * d + c) and by t (the last one). P and
-/// D are -1 where degree and dimension are known at run time only. Derivatives of basis functions
-/// by t come from the basis, those of the residual from automatic differentiation.
+/// control points of the span that t is in now (variables j * d + c) and by t (the last one), zero
+/// where t does not move. P and D are -1 where degree and dimension are known at run time only.
+/// Derivatives of basis functions by t come from the basis, those of the residual from automatic
+/// differentiation.
 template <typename Functor, int P, int D>
 class FreeKernel {
  public:
@@ -82,6 +83,7 @@ class FreeKernel {
                             double* jacobian) const {
     double values[(kDerivatives + 2) * kOrderStorage];
     Differentiate(block, kDerivatives + 1, values);
+    const bool moves = block.place.moves;
     Jet variables[kVariableStorage];
     const Jet* points[kOrderStorage];
     Jet results[kMaxResiduals];
@@ -91,7 +93,7 @@ class FreeKernel {
       auto site = MakeSite<Jet>(block);
       for (int k = 0; k < (kDerivatives + 1) * order(); ++k) {
         site.mutable_basis()[k] = Jet(values[k]);
-        if (t < kChunk) site.mutable_basis()[k].v[t] = values[k + order()];
+        if (moves && t < kChunk) site.mutable_basis()[k].v[t] = values[k + order()];
       }
       for (int v = 0; v + 1 < num_variables(); ++v) {
         variables[v] = Jet(x[Offset(block, v)]);
@@ -113,13 +115,14 @@ class FreeKernel {
                          Second* results) const {
     double values[(kDerivatives + 3) * kOrderStorage];
     Differentiate(block, kDerivatives + 2, values);
-    const double along = direction[block.parameter_offset];
+    const bool moves = block.place.moves;
+    const double along = moves ? direction[block.parameter_offset] : 0.0;
     const int t = num_variables() - 1 - first;
     auto site = MakeSite<Second>(block);
     for (int k = 0; k < (kDerivatives + 1) * order(); ++k) {
       Second& value = site.mutable_basis()[k];
       value = Second(Jet(values[k]), Jet(along * values[k + order()]));
-      if (t < kChunk) {
+      if (moves && t < kChunk) {
         value.value.v[t] = values[k + order()];
         value.slope.v[t] = along * values[k + 2 * order()];
       }
@@ -135,12 +138,10 @@ class FreeKernel {
   }
 
  private:
-  /// Derivatives 0..highest of the basis functions by t; those by a t that is held are zero.
+  /// Derivatives 0..highest of the basis functions at t.
   void Differentiate(const Block& block, int highest, double* values) const {
     EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), block.place.span,
                                 block.place.t, highest, values);
-    if (block.place.moves) return;
-    std::fill(values + (kDerivatives + 1) * order(), values + (highest + 1) * order(), 0.0);
   }
 
   template <typename Real>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cost_functions/curve_fairing.h"
 #include "cost_functions/end_condition.h"
 #include "cost_functions/fairing.h"
 #include "cost_functions/foot_point.h"
@@ -15,7 +16,7 @@ namespace {
 // The built-in terms: one line each.
 constexpr std::unique_ptr<Term> (*kBuiltInTerms[])() = {
     &MakeInterpolationTerm, &MakeFreeParameterTerm, &MakeFootPointTerm,    &MakeFairingTerm,
-    &MakeEndPointTerm,      &MakeEndTangentTerm,    &MakeEndCurvatureTerm,
+    &MakeEndPointTerm,      &MakeEndTangentTerm,    &MakeEndCurvatureTerm, &MakeCurveFairingTerm,
 };
 
 }  // namespace

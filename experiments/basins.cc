@@ -30,6 +30,16 @@ double LargestDistance(const Points& samples, const BsplineCurve& curve) {
   return std::sqrt(squared.maxCoeff());
 }
 
+/// In the user's units; not a number where E has no value.
+double EnergyAt(const Problem& problem, const Eigen::VectorXd& x) {
+  double sum = 0.0;
+  for (const Problem::TermInstance& term : problem.terms()) {
+    const BlockFamily& family = *term.family;
+    if (family.Evaluate(x, 0, family.size(), &sum, nullptr) != Status::kOk) return std::nan("");
+  }
+  return sum * problem.units().energy;
+}
+
 }  // namespace
 
 double EnergyAtFootPoints(const CurveFit& fit, const Points& control_points) {
@@ -55,7 +65,7 @@ BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x) {
   const bool ran = Run(problem, newton, spec, &run, &error) && run.skipped.empty();
   const Eigen::VectorXd& last = ran ? run.x : x;
   end.control_points = problem.curve_fit()->ControlPoints(last);
-  end.energy = run.energy;
+  end.energy = ran ? run.energy : EnergyAt(problem, x);
   end.energy_at_foot_points = EnergyAtFootPoints(*problem.curve_fit(), end.control_points);
   end.polished =
       ran && (IsSuccess(run.outcome.reason) || run.outcome.reason == StopReason::kLineSearchEnded);

@@ -108,7 +108,9 @@ std::vector<NamedCurve> FitBesideTheUnfaired(const Problem& problem, const Eigen
   const CurveFit& fit = *problem.curve_fit();
   std::vector<NamedCurve> curves = {{"fit", fit.Curve(x)}};
   FitSpec spec = fit.spec();
-  const auto is_fairing = [](const NameSpec& term) { return term.name == "fairing"; };
+  const auto is_fairing = [](const NameSpec& term) {
+    return term.name == "fairing" || term.name == "curve_fairing";
+  };
   const auto end = std::remove_if(spec.terms.begin(), spec.terms.end(), is_fairing);
   if (end == spec.terms.end() || end == spec.terms.begin()) return curves;
   spec.terms.erase(end, spec.terms.end());

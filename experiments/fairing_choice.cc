@@ -283,7 +283,7 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
       CurveView::Make(*problem, {problem->terms()[fairing].family->rows()}, nullptr);
   if (data_view == nullptr || fairing_view == nullptr) {
     *error = std::string("fairing=") + ToString(rule) +
-             " needs another term and constraints that treat coordinates alike";
+             " needs another term, and constraints that are linear and treat coordinates alike";
     return false;
   }
   const SmoothingFamily family(data_view->row_source(), fairing_view->row_source());

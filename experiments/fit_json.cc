@@ -6,6 +6,7 @@
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
 #include "experiments/fit_report.h"
+#include "problems/curve_constraints.h"
 
 namespace batten {
 namespace {
@@ -56,6 +57,18 @@ Json TermEnergies(const Problem& problem, const RunResult& run) {
   return terms;
 }
 
+/// Where constraints at parameters that are found hold, in the order of their numbers.
+Json ConstraintParameters(const Problem& problem, const RunResult& run) {
+  Json places = Json::array();
+  for (const VariableRange& range : problem.ranges()) {
+    if (range.name != kConstraintParameters || run.x.size() != problem.num_variables()) continue;
+    for (const double t : run.x.segment(range.begin, range.size)) {
+      places.push_back(problem.curve_fit()->basis().Wrap(t));
+    }
+  }
+  return places;
+}
+
 Json ShapeJson(const FitReport& report) {
   if (!report.shape.has_value()) return nullptr;
   const CurveShape& shape = *report.shape;
@@ -89,6 +102,9 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
   json["energy_at_foot_points"] = report.energy_at_foot_points;
   json["terms"] = TermEnergies(problem, run);
   json["gradient_norm"] = run.gradient_norm;
+  const bool is_constrained = problem.nonlinear_constraints() != nullptr;
+  json["constraint_violation"] = is_constrained ? Json(run.violation) : Json(nullptr);
+  json["constraint_parameters"] = ConstraintParameters(problem, run);
   json["distance"] = {{"rms", report.rms},
                       {"max", report.max},
                       {"rms_orthogonal", report.rms_orthogonal},

@@ -24,6 +24,7 @@ double DistanceWeight(const Problem& problem) {
 /// Where no constraint holds more than parameters, and the audit knows all terms.
 bool AuditApplies(const Problem& problem) {
   const CurveFit& fit = *problem.curve_fit();
+  if (problem.nonlinear_constraints() != nullptr) return false;
   AuditedFit ignored;
   if (DistanceWeight(problem) == 0.0 || !AddTermsBesideDistances(problem, &ignored)) return false;
   if (fit.spec().parameter_kind == ParameterKind::kFixed) return problem.elimination().trivial();

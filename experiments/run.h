@@ -44,7 +44,8 @@ struct Iterate {
   Eigen::VectorXd x;  ///< All variables, scaled as inside.
 };
 
-/// What one run gave; energies, gradients and steps in the user's units.
+/// What one run gave; energies, gradients and steps in the user's units. Under nonlinear
+/// constraints gradients are those of the Lagrangian, its multipliers the ones that make it least.
 struct RunResult {
   NameSpec solver;
   std::map<std::string, std::string> options;  ///< As really used.
@@ -64,6 +65,8 @@ struct RunResult {
   /// |g| below which a step along -g no longer lowers E by more than its rounding. Known where a
   /// line search or a library ended the run, else 0.
   double line_search_floor = 0.0;
+  /// By which nonlinear constraints are missed at the end, in the user's units; 0 without any.
+  double violation = 0.0;
   double observed_rate = 0.0;  ///< Factor of |g| per iteration near the end; NaN: none.
   std::vector<std::pair<std::string, std::string>> notes;
   std::vector<TraceRow> trace;

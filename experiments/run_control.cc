@@ -6,6 +6,7 @@
 #include <ctime>
 #include <limits>
 
+#include "problems/constraint_projection.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -117,7 +118,8 @@ void RunControl::Book(const Eigen::VectorXd& x) {
   const Units& units = problem_.units();
   double energy = 0.0;
   Eigen::VectorXd gradient;
-  const double norm = Evaluate(x, &energy, &gradient);
+  const double norm = Evaluate(x, &energy, &gradient, &row_.violation);
+  const bool is_held = row_.violation <= kConstraintTolerance;
   row_.iteration = iteration_;
   row_.counts = result_->counts;
   row_.counts.distinct_points = static_cast<long>(points_.size());
@@ -125,6 +127,8 @@ void RunControl::Book(const Eigen::VectorXd& x) {
   row_.cpu_seconds = watch_.cpu_seconds();
   row_.energy = energy * units.energy;
   row_.gradient_norm = norm * units.gradient;
+  row_.violation *= units.length;
+  is_held_ = is_held;
   row_.step_norm = last_x_.size() == x.size() ? StepNorm(x) * units.length : 0.0;
   row_.term_energies.clear();
   if (spec_.keep_trace && problem_.terms().size() > 1) {
@@ -171,6 +175,7 @@ StopReason RunControl::CheckStop(const TraceRow& row) {
 
 StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd& x) {
   if (rule_ == NativeRule::kDirect) return StopReason::kNotRun;
+  if (!is_held_) return CheckLimit();
   if (spec_.mode == Mode::kRace) {
     if (row.gradient_norm <= spec_.gradient_tolerance * result_->start_gradient_norm) {
       return StopReason::kGradientSmall;
@@ -186,23 +191,38 @@ StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd
     result_->gradient_floor = reporter_.GradientRoundingFloor(x) * problem_.units().gradient;
     if (row.gradient_norm <= result_->gradient_floor) return StopReason::kRoundingFloor;
   }
+  return CheckLimit();
+}
+
+StopReason RunControl::CheckLimit() const {
   if (iteration_ >= spec_.max_iterations) return StopReason::kIterationLimit;
   if (watch_.seconds() > spec_.max_seconds) return StopReason::kTimeLimit;
   return StopReason::kNotRun;
 }
 
 /// |g|, as inside. NaN where E or g has no value; E is then what was found of it, or NaN.
-double RunControl::Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient) {
-  *energy = std::numeric_limits<double>::quiet_NaN();
-  const bool finite =
-      x.allFinite() && reporter_.EnergyAndGradient(x, energy, gradient) == Status::kOk;
-  return finite ? gradient->norm() : std::numeric_limits<double>::quiet_NaN();
+double RunControl::Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient,
+                            double* violation) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  *energy = kNan;
+  *violation = 0.0;
+  if (!x.allFinite() || reporter_.EnergyAndGradient(x, energy, gradient) != Status::kOk) {
+    return kNan;
+  }
+  if (problem_.nonlinear_constraints() == nullptr) return gradient->norm();
+  const Eigen::VectorXd all = reporter_.Expand(x);
+  *violation = MeasureViolation(problem_, all).largest;
+  LagrangianGradient lagrangian;
+  if (!MakeLagrangianGradient(problem_, all, *gradient, &lagrangian)) return kNan;
+  gradient->swap(lagrangian.gradient);
+  return gradient->norm();
 }
 
 /// For runs that ended before their set-up was done.
 void RunControl::BookStart() {
   Eigen::VectorXd gradient;
-  const double norm = Evaluate(reporter_.start(), &result_->start_energy, &gradient);
+  double violation = 0.0;
+  const double norm = Evaluate(reporter_.start(), &result_->start_energy, &gradient, &violation);
   result_->start_energy *= problem_.units().energy;
   result_->start_gradient_norm = norm * problem_.units().gradient;
 }
@@ -224,7 +244,8 @@ void RunControl::Finish(const Eigen::VectorXd& x) {
   const Units& units = problem_.units();
   double energy = 0.0;
   Eigen::VectorXd gradient;
-  const double norm = Evaluate(x, &energy, &gradient);
+  const double norm = Evaluate(x, &energy, &gradient, &result_->violation);
+  result_->violation *= units.length;
   if (iteration_ < 0) BookStart();
   result_->x = reporter_.Expand(x);
   result_->energy = energy * units.energy;

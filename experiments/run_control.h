@@ -51,7 +51,11 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   void Book(const Eigen::VectorXd& x);
   StopReason CheckStop(const TraceRow& row);
   StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
-  double Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient);
+  StopReason CheckLimit() const;
+  /// E, its gradient or, under nonlinear constraints, the Lagrangian's, whose norm is returned, and
+  /// by how much these constraints are missed; not a number where one of them has no value.
+  double Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient,
+                  double* violation);
   void BookStart();
   double LineSearchFloor(const Eigen::VectorXd& x, double energy, const Eigen::VectorXd& gradient);
   double StepNorm(const Eigen::VectorXd& x) const;
@@ -66,6 +70,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   std::unordered_set<std::uint64_t> points_;
   Eigen::VectorXd last_x_;
   TraceRow row_;
+  bool is_held_ = true;  // nonlinear constraints, at the last iterate
   int iteration_ = -1;
 };
 

@@ -20,11 +20,12 @@ std::string Quoted(const std::string& text) {
 
 }  // namespace
 
-std::string TraceCsv(const std::vector<TraceRow>& trace,
-                     const std::vector<std::string>& term_names) {
+std::string TraceCsv(const std::vector<TraceRow>& trace, const std::vector<std::string>& term_names,
+                     bool is_constrained) {
   std::string text =
       "iteration,energy_calls,gradient_calls,jacobian_calls,products,projections,seconds,"
       "cpu_seconds,energy,gradient_norm,step_norm";
+  if (is_constrained) text += ",constraint_violation";
   for (const std::string& name : term_names) text += "," + Quoted("energy_" + name);
   text += '\n';
   for (const TraceRow& row : trace) {
@@ -38,6 +39,7 @@ std::string TraceCsv(const std::vector<TraceRow>& trace,
          {row.seconds, row.cpu_seconds, row.energy, row.gradient_norm, row.step_norm}) {
       text += ',' + Field(value);
     }
+    if (is_constrained) text += ',' + Field(row.violation);
     for (std::size_t k = 0; k < term_names.size(); ++k) {
       const bool only_one = row.term_energies.empty() && term_names.size() == 1;
       text += ',';

@@ -24,12 +24,14 @@ struct TraceRow {
   double energy = 0.0;
   double gradient_norm = 0.0;
   double step_norm = 0.0;  ///< Largest move of a control point (of a variable, if no curve fit).
+  double violation = 0.0;  ///< By which nonlinear constraints are missed; 0 without any.
   std::vector<double> term_energies;  ///< Empty with a single term: it is the energy.
 };
 
-/// CSV with the header of docs/formats.md; numbers read back to the same double.
-std::string TraceCsv(const std::vector<TraceRow>& trace,
-                     const std::vector<std::string>& term_names);
+/// CSV with the header of docs/formats.md, the violation of constraints in it where the problem is
+/// constrained; numbers read back to the same double.
+std::string TraceCsv(const std::vector<TraceRow>& trace, const std::vector<std::string>& term_names,
+                     bool is_constrained = false);
 
 }  // namespace batten
 

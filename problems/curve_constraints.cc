@@ -8,6 +8,7 @@
 
 #include "cost_functions/bessel_tangents.h"
 #include "cost_functions/end_options.h"
+#include "problems/curve_directions.h"
 #include "problems/fit_problem.h"
 #include "splines/basis_functions.h"
 
@@ -18,6 +19,12 @@ constexpr double kLargest = 1e150;
 
 OptionInfo ParameterOption() {
   return OptionInfo::Real("t", kNotGiven, -kLargest, kNotGiven, "parameter, in the domain");
+}
+
+OptionInfo FreeOption() {
+  return OptionInfo::Integer("free", 0, 0, 99,
+                             "number of a parameter that is found, the same for all constraints "
+                             "with this number; 0: t is given");
 }
 
 std::vector<OptionInfo> WithCoordinates(std::vector<OptionInfo> options) {
@@ -35,9 +42,15 @@ struct Functional {
   };
   std::string name;
   std::vector<Part> parts;
+  /// Not empty: one equation, of the sum of the coordinates with these factors, to be 0.
+  Eigen::RowVectorXd across;
   Eigen::RowVectorXd value;       ///< Infinite: that coordinate stays free.
   bool value_is_a_point = false;  ///< Else a derivative, which moving the origin does not change.
 };
+
+bool IsAtAParameter(const std::string& name) {
+  return name == "point" || name == "tangent" || name == "curvature";
+}
 
 class Builder {
  public:
@@ -45,6 +58,9 @@ class Builder {
       : fit_(fit), basis_(fit.basis()), spec_(spec), options_(std::move(options)), error_(error) {}
 
   bool Build() {
+    if (IsAtAParameter(spec_.name) && options_.Integer("free") > 0) return true;  // not linear
+    if (spec_.name == "curvature") return true;
+    if (spec_.name == "tangent") return AddTangent();
     if (spec_.name == "point") return AddAt(0);
     if (spec_.name == "derivative") return AddAt(options_.Integer("order"));
     if (basis_.periodic()) {
@@ -59,6 +75,10 @@ class Builder {
 
   void Append(std::vector<LinearConstraint>* constraints) const {
     for (const Functional& functional : functionals_) {
+      if (functional.across.size() > 0) {
+        constraints->push_back(Across(functional));
+        continue;
+      }
       for (int c = 0; c < fit_.dimension(); ++c) {
         if (functional.value[c] == kNotGiven) continue;
         constraints->push_back(Constraint(functional, c));
@@ -111,6 +131,25 @@ class Builder {
     functional.parts = {{1.0, t, order, basis_.FindSpan(t)}};
     functional.value_is_a_point = order == 0;
     functionals_.push_back(std::move(functional));
+    return true;
+  }
+
+  /// C'(t) has no part across the direction; along it an inequality holds it.
+  bool AddTangent() {
+    CurveConditions along;
+    if (!MakeCurveConditions({spec_}, fit_, 0, Eigen::VectorXd(), &along, error_)) return false;
+    Eigen::VectorXd direction(fit_.dimension());
+    for (int c = 0; c < fit_.dimension(); ++c) {
+      direction[c] = along.conditions.front().direction[c];
+    }
+    const double t = along.conditions.front().t;
+    for (const Eigen::VectorXd& normal : NormalsOf(direction)) {
+      Functional functional;
+      functional.name = spec_.ToString();
+      functional.parts = {{1.0, t, 1, basis_.FindSpan(t)}};
+      functional.across = normal.transpose();
+      functionals_.push_back(std::move(functional));
+    }
     return true;
   }
 
@@ -209,6 +248,20 @@ class Builder {
     return constraint;
   }
 
+  LinearConstraint Across(const Functional& functional) const {
+    LinearConstraint sum;
+    sum.name = functional.name;
+    Functional of_coordinate = functional;
+    of_coordinate.value.setZero(fit_.dimension());
+    for (int c = 0; c < fit_.dimension(); ++c) {
+      if (functional.across[c] == 0.0) continue;
+      for (const auto& [variable, factor] : Constraint(of_coordinate, c).coefficients) {
+        sum.coefficients.emplace_back(variable, functional.across[c] * factor);
+      }
+    }
+    return sum;
+  }
+
   const CurveFit& fit_;
   const BsplineBasis& basis_;
   const NameSpec& spec_;
@@ -216,6 +269,8 @@ class Builder {
   std::string* error_;
   std::vector<Functional> functionals_;
 };
+
+}  // namespace
 
 bool ResolveConstraint(const NameSpec& spec, OptionValues* options, std::string* error) {
   std::vector<std::string> names;
@@ -232,14 +287,23 @@ bool ResolveConstraint(const NameSpec& spec, OptionValues* options, std::string*
   return false;
 }
 
-}  // namespace
-
 std::vector<ConstraintInfo> KnownConstraints() {
   return {
-      {"point", "the curve passes a point at a parameter", WithCoordinates({ParameterOption()})},
+      {"point", "the curve passes a point at a parameter",
+       WithCoordinates({ParameterOption(), FreeOption()})},
       {"derivative", "a derivative at a parameter",
        WithCoordinates({ParameterOption(), OptionInfo::Integer("order", 1, 1, kMaxDegree,
                                                                "order of the derivative")})},
+      {"tangent", "the direction of the curve at a parameter",
+       WithCoordinates({ParameterOption(), FreeOption(),
+                        OptionInfo::Real("least", 1e-3, 1e-9, 1e9,
+                                         "least |C'|, in parts of the data's size over the "
+                                         "length of the domain")})},
+      {"curvature",
+       "the curvature at a parameter, signed in the plane",
+       {ParameterOption(), FreeOption(),
+        OptionInfo::Real("kappa", kNotGiven, -kLargest, kNotGiven,
+                         "one over the radius, in the unit of the data; inf: not given")}},
       {"ends", "the curve begins and ends in the first and last data point", {EndOption()}},
       {"natural", "no second derivative at the ends", {EndOption()}},
       {"clamped", "Bessel's or a given derivative at the ends", WithCoordinates({EndOption()})},

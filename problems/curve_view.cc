@@ -15,7 +15,7 @@ std::unique_ptr<CurveView> CurveView::Make(const Problem& problem, EvaluationMon
 std::unique_ptr<CurveView> CurveView::Make(const Problem& problem,
                                            std::vector<const RowSource*> sources,
                                            EvaluationMonitor* monitor) {
-  if (sources.empty()) return nullptr;
+  if (sources.empty() || problem.nonlinear_constraints() != nullptr) return nullptr;
   RowShape shape;
   for (const RowSource* source : sources) {
     if (source == nullptr) return nullptr;

@@ -16,7 +16,7 @@ namespace batten {
 /// of constraints, A and Q are those of the points that stay). Products are counted.
 class CurveView {
  public:
-  /// Null if some term has no rows, or constraints treat coordinates differently.
+  /// Null if some term has no rows, or constraints treat coordinates differently or are not linear.
   static std::unique_ptr<CurveView> Make(const Problem& problem, EvaluationMonitor* monitor);
   /// The same of other rows in the problem's control points, such as its terms' with weights that a
   /// loss gives; they must outlive the view. Null too if one of them is null.

@@ -84,7 +84,7 @@ bool CurveFit::CheckKind(const NameSpec& name, const Term& term, std::string* er
              ToString(spec_.parameter_kind);
     return false;
   }
-  if (term.Info().affine && name.name != "interpolation") return true;
+  if (!term.Info().free_parameters && name.name != "interpolation") return true;
   *error = "term " + name.ToString() + " has parameters of its own, but they are projected; use " +
            "foot_point";
   return false;

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "problems/constraint_projection.h"
 #include "problems/curve_constraints.h"
 #include "problems/fit_guard.h"
 #include "problems/robust_start.h"
@@ -214,6 +215,28 @@ bool CurveFit::CheckSpanWeights(std::string* error) const {
   return true;
 }
 
+namespace {
+
+/// Constraints that are not linear, and variables for the parameters that they find.
+bool AddConditions(const CurveFit& fit, const std::vector<LinearConstraint>& linear,
+                   Problem* problem, std::string* error) {
+  CurveConditions made;
+  if (!MakeCurveConditions(fit.spec().constraints, fit, problem->num_variables(), problem->start(),
+                           &made, error)) {
+    return false;
+  }
+  if (made.conditions.empty()) return true;
+  if (made.start.size() > 0) {
+    problem->AddVariables(kConstraintParameters, made.start);
+    if (!problem->SetLinearConstraints(linear, error)) return false;
+  }
+  problem->SetNonlinearConstraints(
+      std::make_shared<CurveConditionFamily>(fit.setting(), std::move(made.conditions)));
+  return CheckForContradictions(*problem, error);
+}
+
+}  // namespace
+
 std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string* error) {
   std::unique_ptr<CurveFit> fit(new CurveFit(std::move(data), std::move(spec)));
   if (!fit->ChooseParameters(error) || !fit->ChooseKnots(error) || !fit->PlaceParameters(error)) {
@@ -261,6 +284,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
     const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;
     if (robust.has_value() && !is_asked_for) problem->SetStart(*robust);
   }
+  if (!AddConditions(*fit, constraints, problem.get(), error)) return nullptr;
   bool has_parameters = !is_free;
   double largest_weight = 0.0;
   std::set<std::pair<const Term*, std::map<std::string, std::string>>> meanings;

@@ -37,6 +37,7 @@ Eigen::VectorXd FreeView::WithoutParameters(const Eigen::VectorXd& all) const {
 }
 
 std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {
+  if (problem.nonlinear_constraints() != nullptr) return nullptr;
   std::unique_ptr<FreeView> view(new FreeView);
   std::vector<const RowSource*> rows;
   for (const Problem::TermInstance& term : problem.terms()) {

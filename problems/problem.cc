@@ -23,7 +23,7 @@ void Problem::SetStart(const Eigen::VectorXd& start) {
   start_ = start;
 }
 
-void Problem::AddTerm(std::string term_name, std::unique_ptr<BlockFamily> family) {
+void Problem::AddTerm(std::string term_name, std::shared_ptr<const BlockFamily> family) {
   terms_.push_back({std::move(term_name), std::move(family)});
 }
 
@@ -39,6 +39,25 @@ bool Problem::SetLinearConstraints(const std::vector<LinearConstraint>& constrai
   return LinearElimination::Make(num_variables(), constraints, &elimination_, error);
 }
 
-void Problem::SetCurveFit(std::unique_ptr<const CurveFit> fit) { curve_fit_ = std::move(fit); }
+void Problem::SetNonlinearConstraints(std::shared_ptr<const ConstraintFamily> constraints) {
+  nonlinear_constraints_ = std::move(constraints);
+}
+
+void Problem::SetCurveFit(std::shared_ptr<const CurveFit> fit) { curve_fit_ = std::move(fit); }
+
+Problem Problem::WithPenalty(std::string term_name,
+                             std::shared_ptr<const BlockFamily> penalty) const {
+  Problem made(name_);
+  made.ranges_ = ranges_;
+  made.start_ = start_;
+  made.lower_bounds_ = lower_bounds_;
+  made.upper_bounds_ = upper_bounds_;
+  made.elimination_ = elimination_;
+  made.units_ = units_;
+  made.curve_fit_ = curve_fit_;
+  made.terms_ = terms_;
+  made.AddTerm(std::move(term_name), std::move(penalty));
+  return made;
+}
 
 }  // namespace batten

@@ -8,6 +8,7 @@
 
 #include "solvers/ceres_spans.h"
 #include "solvers/eliminated_cost.h"
+#include "solvers/solver.h"
 
 namespace batten {
 namespace {
@@ -62,11 +63,13 @@ bool FindGroups(const Problem& problem, const Eigen::VectorXd& x, VariableGroups
 }  // namespace
 
 std::string WhyNoCeresProblem(const Problem& problem, const std::string& solver_name) {
+  std::string why = WhyNoNonlinearConstraints(problem, solver_name);
+  if (!why.empty()) return why;
   VariableGroups groups(problem.num_variables());
   if (!FindGroups(problem, problem.start(), &groups)) {
     return solver_name + " needs terms that group the variables alike; use lbfgs";
   }
-  std::string why = WhyNoWindows(problem, solver_name);
+  why = WhyNoWindows(problem, solver_name);
   if (!why.empty() || !problem.has_bounds()) return why;
   if (!problem.elimination().trivial()) {
     return solver_name + " takes bounds or linear constraints, not both";

@@ -47,7 +47,8 @@ std::string IrlsSolver::WhyUnsupported(const Objective& objective) const {
   }
   const Problem& problem = objective.problem();
   const std::string name = "irls:" + base_->Info().name;
-  if (problem.has_bounds()) return name + " ignores bounds; use ceres_lm";
+  const std::string why = WhyNoBounds(objective, name);
+  if (!why.empty()) return why;
   std::vector<const RowSource*> sources;
   for (const Problem::TermInstance& term : problem.terms()) {
     sources.push_back(term.family->rows_without_loss());

@@ -18,6 +18,8 @@ constexpr int kMostTries = 40;
 
 std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   if (objective.free_view() != nullptr) return "";
+  std::string why = WhyNoNonlinearConstraints(objective.problem(), name);
+  if (!why.empty()) return why;
   const CurveFit* fit = objective.problem().curve_fit();
   if (fit == nullptr) return name + " needs a curve with free parameters; use lbfgs";
   if (!fit->has_free_parameters() && !fit->is_projected()) {

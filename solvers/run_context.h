@@ -20,6 +20,7 @@ enum class StopReason {
   kLineSearchEnded,  // no step along the last direction lowers E measurably
   kStalled,          // it goes on, but no longer comes nearer
   kDiverged,
+  kInfeasible,  // constraints are missed, and no way is found to meet them
   kIterationLimit,
   kTimeLimit,
   kNumericalFailure,  // no finite number where one is needed

@@ -22,6 +22,7 @@ constexpr ReasonWord kReasonWords[] = {
     {StopReason::kLineSearchEnded, "line_search_ended"},
     {StopReason::kStalled, "stalled"},
     {StopReason::kDiverged, "diverged"},
+    {StopReason::kInfeasible, "infeasible"},
     {StopReason::kIterationLimit, "iteration_limit"},
     {StopReason::kTimeLimit, "time_limit"},
     {StopReason::kNumericalFailure, "numerical_failure"},
@@ -69,8 +70,15 @@ std::string WhyNoOrder(const Problem& problem, const std::string& solver_name) {
   return "";
 }
 
+std::string WhyNoNonlinearConstraints(const Problem& problem, const std::string& solver_name) {
+  if (problem.nonlinear_constraints() == nullptr) return "";
+  return solver_name + " holds linear constraints only; use augmented_lagrangian:lbfgs";
+}
+
 std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name) {
   if (objective.is_quadratic()) return "";
+  std::string why = WhyNoNonlinearConstraints(objective.problem(), solver_name);
+  if (!why.empty()) return why;
   if (!objective.options().compile) {
     return solver_name + " needs compiled rows, but compilation is off; use lbfgs";
   }
@@ -85,7 +93,8 @@ std::string WhyNoCurveView(const Objective& objective, const std::string& solver
 }
 
 std::string WhyNoBounds(const Objective& objective, const std::string& solver_name) {
-  return objective.problem().has_bounds() ? solver_name + " ignores bounds; use ceres_lm" : "";
+  if (objective.problem().has_bounds()) return solver_name + " ignores bounds; use ceres_lm";
+  return WhyNoNonlinearConstraints(objective.problem(), solver_name);
 }
 
 std::string WhyNoUnboundedCurveView(const Objective& objective, const std::string& solver_name) {

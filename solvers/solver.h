@@ -51,9 +51,12 @@ class Solver {
 
 /// `NAME does not keep the points in their order; use lbfgs` where that is asked for; else empty.
 std::string WhyNoOrder(const Problem& problem, const std::string& solver_name);
+/// `NAME holds linear constraints only; use ...` where the problem has others; else empty.
+std::string WhyNoNonlinearConstraints(const Problem& problem, const std::string& solver_name);
 /// Why `objective` has no curve view, as a sentence for WhyUnsupported; empty if it has one.
 std::string WhyNoCurveView(const Objective& objective, const std::string& solver_name);
-/// `NAME ignores bounds; use ceres_lm` where the problem has bounds; otherwise empty.
+/// `NAME ignores bounds; use ceres_lm` where the problem has bounds, or WhyNoNonlinearConstraints;
+/// otherwise empty.
 std::string WhyNoBounds(const Objective& objective, const std::string& solver_name);
 /// The first that is not empty of both: for methods that work on the view and ignore bounds.
 std::string WhyNoUnboundedCurveView(const Objective& objective, const std::string& solver_name);

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include "solvers/anderson.h"
+#include "solvers/augmented_lagrangian.h"
 #include "solvers/banded_cholesky.h"
 #include "solvers/banded_qr.h"
 #include "solvers/best_of.h"
@@ -58,6 +59,7 @@ SolverEntry (*const kBuiltInSolvers[])() = {
     &MakeSolverEntry<RandomisedPiaSolver>,
     &AndersonEntry,
     &BestOfEntry,
+    &AugmentedLagrangianEntry,
     &MakeSolverEntry<CgSolver>,
     &MakeSolverEntry<LbfgsSolver>,
     &MakeSolverEntry<CeresLbfgsSolver>,

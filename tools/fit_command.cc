@@ -151,7 +151,7 @@ bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spe
     WriteFitJson(problem, run, spec, report, stream);
   };
   const auto fill_trace = [&](std::ostream* stream) {
-    *stream << TraceCsv(run.trace, TermNames(problem));
+    *stream << TraceCsv(run.trace, TermNames(problem), problem.nonlinear_constraints() != nullptr);
   };
   const auto fill_iterates = [&](std::ostream* stream) {
     *stream << IteratesJsonLines(problem, run);

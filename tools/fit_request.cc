@@ -54,8 +54,9 @@ DEFINE_bool(hold_ends, kDefaults.hold_ends,
             "Free parameters of an open curve: the first and the last one stay at the ends.");
 DEFINE_string(constraints, "",
               "Hard constraints with their options, separated by commas: point/t=0.5/x=1/y=2, "
-              "derivative/t=0/order=1/x=3, ends, natural, clamped, not-a-knot, periodic "
-              "(docs/constraints.md).");
+              "derivative/t=0/order=1/x=3, tangent/t=0/x=1/y=0, curvature/t=0.5/kappa=2, "
+              "point/free=1/x=1/y=2 (at a parameter that is found), ends, natural, clamped, "
+              "not-a-knot, periodic (docs/constraints.md).");
 
 namespace batten {
 namespace {

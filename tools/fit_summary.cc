@@ -120,6 +120,10 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
                        const FitReport& report, const std::vector<std::string>& files) {
   const Counts& counts = run.counts;
   std::string text = CurveLines(label, problem) + SolverLines(run) + EnergyLines(problem, run);
+  if (problem.nonlinear_constraints() != nullptr) {
+    text += Line("constraints", "missed by " + Short(run.violation) +
+                                    " at most; |g| is the gradient of the Lagrangian");
+  }
   text += Line("distance", "rms " + Short(report.rms) + ", largest " + Short(report.max) +
                                " (at the parameters)");
   text +=

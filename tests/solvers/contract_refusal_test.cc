@@ -51,6 +51,34 @@ TEST_P(EverySolver, RunsOrRefusesConstraintsOnOneCoordinate) {
   ExpectRunsOrRefuses(*problem, name());
 }
 
+TEST_P(EverySolver, HoldsNonlinearConstraintsOrRefusesThem) {
+  std::string error;
+  for (const char* constraint :
+       {"curvature/t=0.4/kappa=-3", "tangent/t=0.4/x=1/y=2", "point/free=1/x=0.1/y=0.2"}) {
+    for (const bool through_all : {false, true}) {
+      SCOPED_TRACE(constraint);
+      FitSpec spec = MakeSpec(3, true, through_all ? 50 : 17);
+      ASSERT_TRUE(ParseNameSpecList(constraint, &spec.constraints, &error)) << error;
+      const auto problem = MakeFit(WithoutWeights(MakeNoisyLoop(50, 2, 1)), spec);
+      const std::string why = WhyUnsupported(*problem, name());
+      if (GetParam() == "augmented_lagrangian") {
+        EXPECT_EQ(why, "");
+      } else {
+        ExpectOneSentenceWithAWayOut(why, name());
+      }
+    }
+    FitSpec spec = MakeFreeSpec(3, true, 12);
+    ASSERT_TRUE(ParseNameSpecList(constraint, &spec.constraints, &error)) << error;
+    const auto problem = MakeFit(WithoutWeights(MakeNoisyBean(60, 2, 301)), spec);
+    const std::string why = WhyUnsupported(*problem, free_name());
+    if (GetParam() == "augmented_lagrangian") {
+      EXPECT_EQ(why, "");
+    } else {
+      ExpectOneSentenceWithAWayOut(why, free_name());
+    }
+  }
+}
+
 TEST_P(EverySolver, HonoursBoundsOrRefusesThem) {
   const auto problem = ClosedFit();
   // The box of the data is about [-0.5, 0.5]^2: some control points want to be outside.
