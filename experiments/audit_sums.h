@@ -18,9 +18,9 @@ struct AuditSums {
   Real energy = 0;
   Real squared_distance = 0;
   Real largest = 0;
-  Real squared_rounding = 0;    // of the residuals: sum of w delta^2
-  std::vector<Real> gradient;   // n x d
-  std::vector<Real> rounding;   // its worst case, n x d
+  Real squared_rounding = 0;      // of the residuals: sum of w delta^2
+  std::vector<Real> gradient;     // n x d
+  std::vector<Real> rounding;     // its worst case, n x d
   std::vector<int> num_summands;  // of E that each control point moves, n
   int num_places = 0;             // where terms beside the points are evaluated
   // The same of free parameters, which no two points share: their squares are summed up at once.

@@ -68,10 +68,10 @@ void AddPlace(const AuditedFit& fit, int k, Real factor, const std::vector<doubl
       const int entry = curve->ControlPoint(j) * fit.dimension + c;
       sums->gradient[entry] += 2 * factor * row[j] * residual;
       // The row itself is rounded where its entries are small differences of large ones.
-      sums->rounding[entry] += 2 * factor *
-                               (std::abs(row[j]) * rounding +
-                                AuditSums::kUnitRoundoff * (1 + relative) * sizes[j] *
-                                    std::abs(residual));
+      sums->rounding[entry] +=
+          2 * factor *
+          (std::abs(row[j]) * rounding +
+           AuditSums::kUnitRoundoff * (1 + relative) * sizes[j] * std::abs(residual));
     }
   }
   ++sums->num_places;
@@ -87,10 +87,9 @@ void AddIntegral(const AuditedFit& fit, const AuditedIntegral& integral,
     const Real begin = fit.knots[s];
     const Real length = fit.knots[s + 1] - begin;
     if (!(length > 0)) continue;
-    const Real factor = integral.span_factors.empty()
-                            ? static_cast<Real>(integral.factor)
-                            : static_cast<Real>(integral.factor) *
-                                  integral.span_factors.at(num_spans);
+    const Real factor = integral.span_factors.empty() ? static_cast<Real>(integral.factor)
+                                                      : static_cast<Real>(integral.factor) *
+                                                            integral.span_factors.at(num_spans);
     ++num_spans;
     // The run rounds its nodes to double: by this part of the span.
     const Real relative = (std::abs(begin) + length) / length;

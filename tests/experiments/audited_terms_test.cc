@@ -36,7 +36,8 @@ AuditReport WithIntegral(AuditedFit fit, int derivative, double factor) {
 
 // With the differences d = (1, 2), (2, 1), (1, -3) and the Gram matrix of the Bernstein polynomials
 // of degree 2, (1, 1/2, 1/6; 1/2, 2/3, 1/2; 1/6, 1/2, 1) / 5: 9 / 5 * (55/3 + 2 * 2/3) = 35.4.
-// Second differences a = (1, -1), b = (-1, -4): 36 (a.a + a.b + b.b) / 3 = 264. Third (-2, -3): 468.
+// Second differences a = (1, -1), b = (-1, -4): 36 (a.a + a.b + b.b) / 3 = 264. Third (-2, -3):
+// 468.
 TEST(AuditedIntegral, IsTheIntegralOfABezierSegment) {
   EXPECT_NEAR(WithIntegral(Segment(), 1, 1.0).energy, 35.4, kFewRoundings * 35.4);
   EXPECT_NEAR(WithIntegral(Segment(), 2, 0.5).energy, 132.0, kFewRoundings * 132.0);
@@ -122,11 +123,16 @@ void ExpectVerified(const Problem& problem, const std::string& solver, int itera
 }
 
 TEST(MeasureFit, AuditsFairingAndEnds) {
-  const std::vector<std::string> open_terms = {
-      "fairing/derivative=1/weight=1e-2", "fairing/weight=1e-4", "fairing/derivative=3/weight=1e-7",
-      "fairing/units=source/weight=0.01", "end_point/weight=10", "end_tangent/weight=0.1",
-      "end_tangent/units=source/end=begin", "end_curvature/weight=1e-3",
-      "end_curvature/end=end/x=3/units=source", "end_point/end=begin/y=2"};
+  const std::vector<std::string> open_terms = {"fairing/derivative=1/weight=1e-2",
+                                               "fairing/weight=1e-4",
+                                               "fairing/derivative=3/weight=1e-7",
+                                               "fairing/units=source/weight=0.01",
+                                               "end_point/weight=10",
+                                               "end_tangent/weight=0.1",
+                                               "end_tangent/units=source/end=begin",
+                                               "end_curvature/weight=1e-3",
+                                               "end_curvature/end=end/x=3/units=source",
+                                               "end_point/end=begin/y=2"};
   for (const std::string& term : open_terms) {
     for (const auto& [begin, length] : {std::pair(0.0, 1.0), std::pair(1000.0, 8.0)}) {
       const auto problem = Wave(false, 4, ParameterKind::kFixed,
