@@ -24,6 +24,7 @@ std::unique_ptr<CutRule> CheckedCutRule(const std::string& name) {
 
 SubdivisionOptions PaperSubdivision(SubdivisionMode mode) {
   SubdivisionOptions options;
+  options.stop = StopMeasure::kControlPoints;
   options.mode = mode;
   return options;
 }
