@@ -38,7 +38,7 @@ class AdaptiveLoop {
       } else if (list_.size() + static_cast<int>(stack_.size()) >= max_pieces_) {
         return false;
       } else {
-        CutTop();
+        cutter_.always_halves() ? HalveTop() : CutTop();
       }
     }
     result_.end =
@@ -61,27 +61,36 @@ class AdaptiveLoop {
     list_.AddPiece(points, piece.end);
   }
 
+  void HalveTop() {
+    ReserveOneMore();
+    double* const place = places_[stack_.size() - 1];
+    double* const above = places_[stack_.size()];
+    const PieceInterval first = cutter_.Halve(place, &stack_.back(), above, place);
+    RenewTop(above, place);
+    stack_.push_back(first);
+  }
+
   void CutTop() {
     ReserveOneMore();
     double*& place = places_[stack_.size() - 1];
     double*& above = places_[stack_.size()];
-    if (cutter_.always_halves()) {
-      cutter_.Halve(place, stack_.back(), above, place);
-    } else {
-      cutter_.Choose(place, stack_.back());
-      cutter_.CutOrExchange(&above, &place);
-    }
-    PieceInterval& second = stack_.back();
-    second = cutter_.second_interval();
-    if (second.chain >= kLongestChain) {
-      second.chain = 0;
-      cutter_.ComputeAfresh(second, above + cutter_.size() - cutter_.dimension(), place);
-    }
+    cutter_.Choose(place, stack_.back());
+    cutter_.CutOrExchange(&above, &place);
+    stack_.back() = cutter_.second_interval();
+    RenewTop(above, place);
     if (cutter_.first_passes()) {
       Finish(above, cutter_.first_interval());
     } else {
       stack_.push_back(cutter_.first_interval());
     }
+  }
+
+  /// The second part, behind a long chain of cuts.
+  void RenewTop(const double* first, double* second) {
+    PieceInterval& interval = stack_.back();
+    if (interval.chain < kLongestChain) return;
+    interval.chain = 0;
+    cutter_.ComputeAfresh(interval, first + cutter_.size() - cutter_.dimension(), second);
   }
 
   const int max_pieces_;
@@ -132,12 +141,11 @@ void HalveWorstFirst(const double* points, const SubdivisionOptions& options, Pi
   sort_in(PieceInterval(), points);
   const auto most = static_cast<std::size_t>(options.max_pieces);
   while (!waiting.empty() && waiting.size() + done.size() < most) {
-    const PieceInterval piece = waiting.top().interval;
+    PieceInterval piece = waiting.top().interval;
     waiting.pop();
     cutter->ComputeAfresh(piece, nullptr, second);
-    cutter->Halve(second, piece, first, second);
-    sort_in(cutter->first_interval(), first);
-    sort_in(cutter->second_interval(), second);
+    sort_in(cutter->Halve(second, &piece, first, second), first);
+    sort_in(piece, second);
   }
   result->end = SubdivisionEnd::kPieceLimit;
   result->num_failing += static_cast<int>(waiting.size());

@@ -33,18 +33,12 @@ StopValue PieceCutter::Try(double u) {
   return value;
 }
 
-void PieceCutter::Halve(const double* points, const PieceInterval& piece, double* first,
-                        double* second) {
-  SetPiece(piece);
-  constexpr double kHalf = 0.5;
-  SetPlace(kHalf);
-  CutBezier(degree_, dimension_, fraction_, points, first, second);
-  ++cuts_;
-}
-
 void PieceCutter::Choose(const double* points, const PieceInterval& piece) {
-  SetPiece(piece);
   points_ = points;
+  begin_ = piece.begin;
+  end_ = piece.end;
+  depth_ = piece.depth;
+  chain_ = piece.chain;
   tried_ = std::nan("");
   const double u = rule_(this);
   is_tried_ = u == tried_;

@@ -30,8 +30,15 @@ class PieceCutter final : public CutTrial {
     CutBezier(degree_, dimension_, 0.5, points, first, second);
     ++cuts_;
   }
-  /// The same as the cut whose intervals are asked for next.
-  void Halve(const double* points, const PieceInterval& piece, double* first, double* second);
+  /// The same, where all cuts so far were at 1/2; `piece` becomes the second part's interval, the
+  /// first part's is returned.
+  PieceInterval Halve(const double* points, PieceInterval* piece, double* first, double* second) {
+    Halve(points, first, second);
+    const double middle = piece->begin + 0.5 * (piece->end - piece->begin);  // no rounding
+    const PieceInterval first_part = {piece->begin, middle, piece->depth + 1, piece->chain + 1};
+    *piece = {middle, piece->end, piece->depth + 1, piece->chain + 1};
+    return first_part;
+  }
   StopValue Try(double u) override;
   /// Asks the rule where to cut the piece.
   void Choose(const double* points, const PieceInterval& piece);
@@ -60,13 +67,6 @@ class PieceCutter final : public CutTrial {
   std::int64_t evaluations() const { return tests_ + own_evaluations_; }
 
  private:
-  void SetPiece(const PieceInterval& piece) {
-    begin_ = piece.begin;
-    end_ = piece.end;
-    depth_ = piece.depth;
-    chain_ = piece.chain;
-    is_tried_ = false;
-  }
   void SetPlace(double u);
 
   const BezierCurve& curve_;

@@ -131,8 +131,8 @@ TEST(SubdivideCommand, TheFigureOfACurveInSpaceNamesItsAxes) {
                                  "--figure=" + (folder / "cut.svg")});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const std::string script = ReadFile(folder / "cut.gp");
-  EXPECT_THAT(script, HasSubstr("set xlabel \"x\""));
-  EXPECT_THAT(script, HasSubstr("set ylabel \"z\""));
+  EXPECT_THAT(script, HasSubstr("set xlabel 'x'"));
+  EXPECT_THAT(script, HasSubstr("set ylabel 'z'"));
   EXPECT_THAT(script, HasSubstr("polyline"));
 }
 
@@ -169,12 +169,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadCurve{"BrokenJson", "c.json", "{\"spline\": ", "c.json: line 1"},
         BadCurve{"NoSpline", "c.json", "{\"a\": 1}", "c.json: /spline"},
         BadCurve{"RaggedPoints", "c.json", "{\"control_points\": [[0, 0], [1]]}",
-                 "c.json: /control_points/1: found [1]; allowed: a point of 2 coordinates, as the "
+                 "c.json: /control_points/1: found a list; allowed: a point of 2 coordinates, as the "
                  "first"},
         BadCurve{"ATextAmongNumbers", "c.json", "{\"control_points\": [[0, 0], [1, \"a\"]]}",
                  "c.json: /control_points/1/1: found \"a\"; allowed: a number"},
         BadCurve{"NoPoints", "c.json", "{\"control_points\": []}",
-                 "c.json: /control_points: found []; allowed: a list of points of 1 to 4 "
+                 "c.json: /control_points: found an empty list; allowed: a list of points of 1 to 4 "
                  "coordinates"},
         BadCurve{"FiveCoordinates", "c.json", "{\"control_points\": [[0, 0, 0, 0, 0]]}",
                  "c.json: /control_points/0: found"},
