@@ -23,9 +23,9 @@ Reproduction BezierPaper() {
       "the "
       "interval that holds the median of the family with 95 % confidence. The true error is the "
       "certified Hausdorff distance of curve and polyline over the tolerance.";
-  reproduction.experiments = {BezierPaperTable(),  BezierPaperFamilies(), BezierPaperGlyphs(),
-                              BezierPaperOneCut(), BezierPaperRounds(),   BezierPaperBestCuts(),
-                              BezierPaperAffine(), BezierPaperMinima()};
+  reproduction.experiments = {BezierPaperTable(),      BezierPaperFamilies(), BezierPaperGlyphs(),
+                              BezierPaperEqualError(), BezierPaperOneCut(),   BezierPaperRounds(),
+                              BezierPaperBestCuts(),   BezierPaperAffine(),   BezierPaperMinima()};
   return reproduction;
 }
 

@@ -15,11 +15,12 @@ namespace {
 constexpr std::string_view kGroups[] = {"svg", "g", "a", "switch"};
 // SVG 1.1 and 2: "never rendered", descriptions, paint servers, animations.
 constexpr std::string_view kNotDrawn[] = {
-    "defs",           "symbol",         "clipPath",  "mask",          "marker",
-    "pattern",        "linearGradient", "filter",    "title",         "desc",
-    "metadata",       "script",         "animate",   "animateMotion", "animateTransform",
-    "radialGradient", "set",            "view",      "cursor",        "font",
-    "font-face",      "color-profile",  "solidcolor"};
+    "defs",      "symbol",        "clipPath",         "mask",
+    "marker",    "pattern",       "linearGradient",   "filter",
+    "title",     "desc",          "metadata",         "script",
+    "animate",   "animateMotion", "animateTransform", "radialGradient",
+    "set",       "view",          "cursor",           "font",
+    "font-face", "color-profile", "solidcolor"};
 
 template <std::size_t size>
 bool IsOneOf(const std::string_view (&names)[size], std::string_view name) {
@@ -103,9 +104,8 @@ class SvgReader {
     }
     const pugi::xml_node root = document.document_element();
     if (LocalName(root) != "svg") {
-      return Fail(PlaceOf(root.name()), "found the element " +
-                                            Quoted(root.name(), kLongestQuote) +
-                                            "; allowed: svg");
+      return Fail(PlaceOf(root.name()),
+                  "found the element " + Quoted(root.name(), kLongestQuote) + "; allowed: svg");
     }
     bool enters = true;
     for (pugi::xml_node node = root; node; node = Next(node, enters)) {
@@ -180,8 +180,7 @@ class SvgReader {
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t newline = before.rfind('\n');
     const std::size_t column = before.size() - (newline == before.npos ? 0 : newline + 1) + 1;
-    error_ =
-        file_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + sentence;
+    error_ = file_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + sentence;
     return false;
   }
 
@@ -210,8 +209,7 @@ bool ReadSvgPaths(const std::string& path, std::vector<BezierPath>* paths, std::
   if (!(has_elements ? reader.ReadElements() : reader.ReadPathData())) return false;
   *left_out = reader.LeftOut();
   if (!paths->empty()) return true;
-  *error = path + ": found no path with a curve" +
-           (left_out->empty() ? "" : " but " + *left_out) +
+  *error = path + ": found no path with a curve" + (left_out->empty() ? "" : " but " + *left_out) +
            "; allowed: <path d=\"M ... C ...\"/> or path data";
   return false;
 }

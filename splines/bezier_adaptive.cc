@@ -41,8 +41,7 @@ class AdaptiveLoop {
         cutter_.always_halves() ? HalveTop() : CutTop();
       }
     }
-    result_.end =
-        result_.num_failing == 0 ? SubdivisionEnd::kAllPass : SubdivisionEnd::kDepthLimit;
+    result_.end = result_.num_failing == 0 ? SubdivisionEnd::kAllPass : SubdivisionEnd::kDepthLimit;
     return true;
   }
 

@@ -3,8 +3,8 @@
 
 namespace batten {
 
-// Of the n + 1 control points of a planar curve (d = 2); in space a hull has a volume and no area of
-// this kind. Neither function allocates.
+// Of the n + 1 control points of a planar curve (d = 2); in space a hull has a volume and no area
+// of this kind. Neither function allocates.
 
 /// The corners of the convex hull of planar points (d = 2), counter-clockwise from the one of least
 /// x, by Andrew's chains: indices[0..result - 1], with room for n + 2. No corner but one of

@@ -115,7 +115,7 @@ class UniformRounds {
   // Not std::vector, which fills new room with zeros: that took as long as cuts of cubics.
   Eigen::VectorXd numbers_;
   std::vector<PieceInterval> pieces_;  // not kept of halves
-  Eigen::VectorXd next_numbers_;  // their room is used again: fresh pages took as long as cuts
+  Eigen::VectorXd next_numbers_;       // their room is used again: fresh pages took as long as cuts
   std::vector<PieceInterval> next_pieces_;
 };
 

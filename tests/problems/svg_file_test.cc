@@ -144,8 +144,8 @@ TEST(SvgFile, RefusesWhatIsNotWellFormed) {
   Read read;
   std::string error;
   const ScratchFolder folder;
-  EXPECT_FALSE(ReadSvgPaths((folder.path() / "missing.svg").string(), &read.paths, &read.left_out,
-                            &error));
+  EXPECT_FALSE(
+      ReadSvgPaths((folder.path() / "missing.svg").string(), &read.paths, &read.left_out, &error));
 }
 
 TEST(SvgFile, DeepNestingIsNoMatter) {

@@ -168,14 +168,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "c.csv: found the column weight"},
         BadCurve{"BrokenJson", "c.json", "{\"spline\": ", "c.json: line 1"},
         BadCurve{"NoSpline", "c.json", "{\"a\": 1}", "c.json: /spline"},
-        BadCurve{"RaggedPoints", "c.json", "{\"control_points\": [[0, 0], [1]]}",
-                 "c.json: /control_points/1: found a list; allowed: a point of 2 coordinates, as the "
-                 "first"},
+        BadCurve{
+            "RaggedPoints", "c.json", "{\"control_points\": [[0, 0], [1]]}",
+            "c.json: /control_points/1: found a list; allowed: a point of 2 coordinates, as the "
+            "first"},
         BadCurve{"ATextAmongNumbers", "c.json", "{\"control_points\": [[0, 0], [1, \"a\"]]}",
                  "c.json: /control_points/1/1: found \"a\"; allowed: a number"},
-        BadCurve{"NoPoints", "c.json", "{\"control_points\": []}",
-                 "c.json: /control_points: found an empty list; allowed: a list of points of 1 to 4 "
-                 "coordinates"},
+        BadCurve{
+            "NoPoints", "c.json", "{\"control_points\": []}",
+            "c.json: /control_points: found an empty list; allowed: a list of points of 1 to 4 "
+            "coordinates"},
         BadCurve{"FiveCoordinates", "c.json", "{\"control_points\": [[0, 0, 0, 0, 0]]}",
                  "c.json: /control_points/0: found"},
         BadCurve{"TooWide", "c.json", "{\"control_points\": [[-1.7e308, 0], [1.7e308, 1]]}",
