@@ -41,9 +41,9 @@ AtError RunAtError(CutRule* rule, const BezierCurve& curve, int repetitions) {
       tolerance = options.relative_tolerance;
     }
     // Halfway back where it was too much: errors of halving go by steps.
-    options.relative_tolerance =
-        error <= 1.0 ? options.relative_tolerance / std::max(error, 0.25) * 1.01
-                     : std::sqrt(options.relative_tolerance * tolerance);
+    options.relative_tolerance = error <= 1.0
+                                     ? options.relative_tolerance / std::max(error, 0.25) * 1.01
+                                     : std::sqrt(options.relative_tolerance * tolerance);
   }
   options.relative_tolerance = tolerance;
   best.run = RunRule(rule, curve, options, repetitions);
@@ -67,8 +67,7 @@ bool RunEqualError(const ExperimentRun& run, ExperimentTables* tables, std::stri
         const BezierCurve curve = FamilyCurve(family, degree, k);
         AtError half;
         for (std::size_t r = 0; r < names.size(); ++r) {
-          const AtError found =
-              RunAtError(CheckedCutRule(names[r]).get(), curve, run.repetitions);
+          const AtError found = RunAtError(CheckedCutRule(names[r]).get(), curve, run.repetitions);
           if (r == 0) half = found;
           pieces[r].push_back(static_cast<double>(found.run.result.num_pieces()) /
                               half.run.result.num_pieces());
@@ -133,12 +132,14 @@ Experiment BezierPaperEqualError() {
   experiment.text =
       "At one tolerance a rule may come nearer to the curve than another. Here each rule gets, on "
       "each curve, the tolerance of `polygon` with which it needs fewest pieces, of eight that are "
-      "tried, at a certified error of at most 1e-4 of the curve's box. 20 curves each of degrees 3, "
+      "tried, at a certified error of at most 1e-4 of the curve's box. 20 curves each of degrees "
+      "3, "
       "8, 16 and 25 in each family, adaptive; ratios are to halving on the same curve.";
   experiment.run = &RunEqualError;
   experiment.shown = &ShownEqualError;
   experiment.claims = {
-      {"at equal true error the longest passing first part needs a quarter fewer pieces than halving",
+      {"at equal true error the longest passing first part needs a quarter fewer pieces than "
+       "halving",
        "docs/cut_rules/longest.md",
        "holds where the median ratio is at most 0.75 in every family and degree; in part where in "
        "some",

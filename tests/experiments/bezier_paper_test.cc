@@ -279,6 +279,13 @@ TEST(BezierPaperCurves, GlyphsAreQuadraticsAndCubics) {
   for (const BezierCurve& curve : curves) EXPECT_EQ(curve.degree(), 3);
 }
 
+TEST(BezierPaperRuns, HalvingIsAskedWhereThePapersRulesAre) {
+  for (const SubdivisionSetting& setting : SubdivisionSettings()) {
+    EXPECT_EQ(RuleIn(setting, "half")->AlwaysHalves(), setting.name == "certified");
+    EXPECT_EQ(RuleIn(setting, "half")->Info().name, "half");
+  }
+}
+
 TEST(BezierPaperRuns, ComparedRulesStayBelowTheTolerance) {
   CsvTable table({"family", "setting", "rule", "curves", "pieces_ratio", "pieces_low",
                   "pieces_high", "seconds_ratio", "seconds_low", "seconds_high", "time_wins",
