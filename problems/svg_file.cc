@@ -35,7 +35,8 @@ bool IsNameCharacter(char c) {
 
 /// The value of a CSS property, up to `;` or `}`; null where `css` does not set it.
 const char* FindProperty(std::string_view css, std::string_view property) {
-  for (std::size_t at = css.find(property); at != css.npos; at = css.find(property, at + 1)) {
+  for (std::size_t at = css.find(property); at != std::string_view::npos;
+       at = css.find(property, at + 1)) {
     if (at > 0 && IsNameCharacter(css[at - 1])) continue;
     std::size_t next = at + property.size();
     while (next < css.size() && IsSpace(css[next])) ++next;
@@ -57,7 +58,7 @@ bool IsNone(const char* value) {
 std::string_view LocalName(const pugi::xml_node& node) {
   const std::string_view name = node.name();
   const std::size_t colon = name.find(':');
-  if (colon == name.npos) return name;
+  if (colon == std::string_view::npos) return name;
   return name.substr(0, colon) == "svg" ? name.substr(colon + 1) : std::string_view();
 }
 
@@ -179,7 +180,8 @@ class SvgReader {
     const std::string_view before = std::string_view(text_).substr(0, offset);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t newline = before.rfind('\n');
-    const std::size_t column = before.size() - (newline == before.npos ? 0 : newline + 1) + 1;
+    const std::size_t column =
+        before.size() - (newline == std::string_view::npos ? 0 : newline + 1) + 1;
     error_ = file_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + sentence;
     return false;
   }
