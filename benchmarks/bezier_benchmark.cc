@@ -104,7 +104,7 @@ void HalvingInRounds(benchmark::State& state) {
   Subdivision result;
   std::string error;
   for (auto _ : state) {
-    CHECK(Subdivide(curve, &CutAtHalf, options, &result, &error)) << error;
+    CHECK(Subdivide(curve, CutChoice(), options, &result, &error)) << error;
     benchmark::DoNotOptimize(result.vertices.data());
   }
   CHECK_EQ(result.cuts, kNumCuts);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "splines/bezier_cut_value.h"
+#include "splines/bezier_hull.h"
 #include "splines/bezier_measures.h"
 
 namespace batten {

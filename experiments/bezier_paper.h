@@ -12,6 +12,7 @@ Reproduction BezierPaper();
 Experiment BezierPaperTable();
 Experiment BezierPaperFamilies();
 Experiment BezierPaperGlyphs();
+Experiment BezierPaperEqualError();
 Experiment BezierPaperOneCut();
 Experiment BezierPaperRounds();
 Experiment BezierPaperBestCuts();

@@ -128,15 +128,14 @@ CsvTable ShownShares(const ExperimentTables& tables) {
   return shown;
 }
 
-std::vector<PlotPanel> HistogramPanels(const ExperimentTables& tables) {
+std::vector<PlotPanel> HistogramPanels(const ExperimentTables& tables, CutMeasure measure) {
   std::vector<PlotPanel> panels;
   for (const std::string& family : tables.at("").Distinct("family")) {
     PlotPanel panel;
-    panel.title = family + ", flattest cuts by round";
+    panel.title = family + ", " + ToString(measure) + " by round";
     panel.x_label = "place of the best cut";
     panel.y_label = "share of the round's cuts";
-    const CsvTable rows =
-        tables.at("").Where("measure", ToString(CutMeasure::kFlatness)).Where("family", family);
+    const CsvTable rows = tables.at("").Where("measure", ToString(measure)).Where("family", family);
     int color = 0;
     for (const std::string& round : rows.Distinct("round")) {
       const CsvTable of_round = rows.Where("round", round);
@@ -171,8 +170,13 @@ Experiment BezierPaperBestCuts() {
        "holds where from the fourth round on at least 90 % are in [0.4, 0.6], for each measure and "
        "family; in part where for some",
        &JudgeNearHalf}};
-  experiment.figures = {
-      {"best_cuts_flatness", "Places of the flattest cuts, by round.", 3, &HistogramPanels}};
+  const auto panels_of = [](CutMeasure measure) {
+    return [measure](const ExperimentTables& tables) { return HistogramPanels(tables, measure); };
+  };
+  experiment.figures = {{"best_cuts_flatness", "Places of the flattest cuts, by round.", 3,
+                         panels_of(CutMeasure::kFlatness)},
+                        {"best_cuts_hull", "Places of the cuts with the smallest hulls, by round.",
+                         3, panels_of(CutMeasure::kHullArea)}};
   return experiment;
 }
 

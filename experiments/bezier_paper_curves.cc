@@ -7,7 +7,7 @@
 #include <random>
 
 #include "problems/data_folders.h"
-#include "problems/svg_path.h"
+#include "problems/svg_file.h"
 
 namespace batten {
 namespace {
@@ -59,7 +59,9 @@ BezierCurve FamilyCurve(const std::string& family, int degree, int number) {
 
 bool GlyphCurves(const std::string& name, std::vector<BezierCurve>* curves, std::string* error) {
   std::vector<BezierPath> paths;
-  if (!ReadSvgPaths(DataRoot() + "/data/glyphs/" + name + ".svg", &paths, error)) return false;
+  std::string left_out;
+  const std::string file = DataRoot() + "/data/glyphs/" + name + ".svg";
+  if (!ReadSvgPaths(file, &paths, &left_out, error)) return false;
   for (const BezierPath& path : paths) {
     for (const BezierSpan& span : path.spans) {
       if (span.curve.degree() > 1) curves->push_back(span.curve);

@@ -6,7 +6,7 @@
 #include "experiments/bezier_paper_curves.h"
 #include "experiments/experiment_runs.h"
 #include "solvers/cut_search.h"
-#include "splines/bezier_measures.h"
+#include "splines/bezier_hull.h"
 
 namespace batten {
 namespace {

@@ -8,10 +8,27 @@
 #include "cost_functions/options.h"
 #include "experiments/ratio_statistics.h"
 #include "solvers/cut_rule_registry.h"
+#include "solvers/half_cut_rule.h"
 #include "splines/bezier_distance.h"
 #include "splines/bezier_measures.h"
 
 namespace batten {
+namespace {
+
+class AskedHalf final : public CutRule {
+ public:
+  CutRuleInfo Info() const override { return HalfCutRule::ClassInfo(); }
+  double Choose(CutTrial* trial) override { return CutAtHalf(trial); }
+};
+
+}  // namespace
+
+std::unique_ptr<CutRule> RuleIn(const SubdivisionSetting& setting, const std::string& name) {
+  if (name == "half" && setting.options.stop == StopMeasure::kControlPoints) {
+    return std::make_unique<AskedHalf>();
+  }
+  return CheckedCutRule(name);
+}
 
 std::unique_ptr<CutRule> CheckedCutRule(const std::string& name) {
   NameSpec spec;
@@ -24,6 +41,7 @@ std::unique_ptr<CutRule> CheckedCutRule(const std::string& name) {
 
 SubdivisionOptions PaperSubdivision(SubdivisionMode mode) {
   SubdivisionOptions options;
+  options.stop = StopMeasure::kControlPoints;
   options.mode = mode;
   return options;
 }
@@ -119,7 +137,7 @@ void CompareRules(const std::vector<BezierCurve>& curves, const std::vector<std:
     const SubdivisionOptions& options = setting.options;
     const std::vector<std::string> names = ComparedRules(setting);
     std::vector<std::unique_ptr<CutRule>> rules;
-    for (const std::string& name : names) rules.push_back(CheckedCutRule(name));
+    for (const std::string& name : names) rules.push_back(RuleIn(setting, name));
     std::vector<CellStatistics> cells(names.size());
     for (std::size_t k = 0; k < curves.size(); ++k) {
       const RuleRun half = RunRule(rules[0].get(), curves[k], options, repetitions);

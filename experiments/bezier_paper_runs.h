@@ -61,6 +61,11 @@ const std::vector<SubdivisionSetting>& SubdivisionSettings();
 /// Rules that are compared in a setting; halving is the first.
 std::vector<std::string> ComparedRules(const SubdivisionSetting& setting);
 
+/// The rule as it runs in a setting. In those of the paper halving is asked about each piece, as
+/// the rules beside it are, since times compare rules there; in "certified" it is what users run,
+/// which asks nobody and is faster.
+std::unique_ptr<CutRule> RuleIn(const SubdivisionSetting& setting, const std::string& name);
+
 /// Runs the rules of all settings on each curve, one after the other on the same curve, and adds a
 /// row per setting and rule behind `first` to `table`, whose columns are first, setting, rule and
 /// CellStatistics::Columns(). Every `certified`-th curve's true error is certified.

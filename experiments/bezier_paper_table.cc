@@ -47,7 +47,7 @@ bool RunTable(const ExperimentRun& run, ExperimentTables* tables, std::string* /
       names.insert(names.end(), {"flatness/search=exact", "hull/search=exact"});
       double half_seconds = 0.0;
       for (const std::string& name : names) {
-        const RuleRun found = RunRule(CheckedCutRule(name).get(), curve, options, run.repetitions);
+        const RuleRun found = RunRule(RuleIn(setting, name).get(), curve, options, run.repetitions);
         if (name == "half") half_seconds = found.seconds;
         const bool is_papers =
             setting.name == "uniform" && (name == "half" || name == "flatness" || name == "hull");

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/build_info.h"
-#include "experiments/plot.h"
+#include "experiments/short_number.h"
 #include "splines/bezier_distance.h"
 
 namespace batten {
@@ -50,69 +50,86 @@ void AddError(const BezierCurve& curve, const Subdivision& part, CurveSubdivisio
       whole->num_curves == 1 ? bounds.lower : std::numeric_limits<double>::quiet_NaN();
 }
 
-void AppendRows(const Points& points, int across, int up, PlotSeries* series) {
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    series->x.push_back(points(i, across));
-    series->y.push_back(points(i, up));
+/// A rule that tells of its progress.
+class WatchedRule final : public CutRule {
+ public:
+  WatchedRule(CutRule* rule, const SubdivisionProgress& progress, int num_curves)
+      : rule_(*rule), progress_(progress), num_curves_(num_curves) {}
+
+  CutRuleInfo Info() const override { return rule_.Info(); }
+  std::string WhyUnsupported(const BezierCurve& curve,
+                             const SubdivisionOptions& options) const override {
+    return rule_.WhyUnsupported(curve, options);
   }
+  void Start(const BezierCurve& curve, const SubdivisionOptions& options) override {
+    rule_.Start(curve, options);
+    is_uniform_ = options.mode == SubdivisionMode::kUniform;
+    ++curve_;
+    Tell(0.0, 0);
+  }
+  bool AlwaysHalves() const override { return rule_.AlwaysHalves(); }
+  double Choose(CutTrial* trial) override {
+    constexpr int kSeldom = 16;  // looking at the clock takes as long as a cut
+    if (++num_choices_ % kSeldom == 0) Tell(trial->begin(), trial->depth());
+    return rule_.Choose(trial);
+  }
+
+ private:
+  void Tell(double done, int round) const {
+    if (!progress_) return;
+    progress_((curve_ + done) / num_curves_,
+              "curve " + std::to_string(curve_ + 1) + " of " + std::to_string(num_curves_) +
+                  (is_uniform_ ? ", round " + std::to_string(round + 1) : ""));
+  }
+
+  CutRule& rule_;
+  const SubdivisionProgress& progress_;
+  const int num_curves_;
+  int curve_ = -1;
+  int num_choices_ = 0;
+  bool is_uniform_ = false;
+};
+
+bool CheckRoom(const SubdivisionOptions& options, double size, int num_curves, std::string* error) {
+  if (!std::isfinite(size)) {
+    *error =
+        "the box of all control points is wider than the largest number; allowed: a box up to "
+        "1.797e308 wide";
+    return false;
+  }
+  if (num_curves <= options.max_pieces) return true;
+  *error = "max_pieces is " + std::to_string(options.max_pieces) + ", must be at least " +
+           std::to_string(num_curves) + ", a piece for each curve";
+  return false;
 }
 
-void AppendCurve(const BezierCurve& curve, int across, int up, PlotSeries* series) {
-  constexpr int kSteps = 200;
-  double point[kMaxDimension];
-  for (int k = 0; k <= kSteps; ++k) {
-    curve.Evaluate(k / static_cast<double>(kSteps), point);
-    series->x.push_back(point[across]);
-    series->y.push_back(point[up]);
+/// Empty unless control_points has missed the tolerance.
+std::string MissedTolerance(const SubdivisionOptions& options, const CurveSubdivision& result) {
+  // Certified to 1e-3.
+  constexpr double kSlack = 1.002;
+  constexpr int kDigits = 3;
+  const double wanted = options.relative_tolerance * result.size;
+  if (options.stop != StopMeasure::kControlPoints || result.end != SubdivisionEnd::kAllPass ||
+      !(wanted > 0.0) || result.error_at_most <= kSlack * wanted) {
+    return "";
   }
-}
-
-// Each path is its own series: the plot has no gaps within one.
-PlotPanel ProjectionPanel(const std::vector<BezierPath>& paths, const CurveSubdivision& result,
-                          int across, int up) {
-  constexpr int kPolygonColor = 7, kCurveColor = 0, kVertexColor = 1;
-  PlotPanel panel;
-  panel.equal_scale = true;
-  if (result.points.cols() > 2) {
-    panel.x_label = kCoordinateNames[across];
-    panel.y_label = kCoordinateNames[up];
-  }
-  // Below the curve, which many marks would hide.
-  constexpr std::int64_t kFewPieces = 100;
-  PlotSeries vertices;
-  vertices.label = "cuts";
-  vertices.style =
-      result.num_pieces <= kFewPieces ? PlotSeries::Style::kCircles : PlotSeries::Style::kPoints;
-  vertices.color = kVertexColor;
-  AppendRows(result.points, across, up, &vertices);
-  panel.series.push_back(std::move(vertices));
-  for (const BezierPath& path : paths) {
-    PlotSeries polygon, curve;
-    polygon.style = PlotSeries::Style::kDashed;
-    polygon.color = kPolygonColor;
-    curve.style = PlotSeries::Style::kLine;
-    curve.color = kCurveColor;
-    if (&path == &paths.front()) {
-      polygon.label = "control polygon";
-      curve.label = "curve";
-    }
-    for (const BezierSpan& span : path.spans) {
-      AppendRows(span.curve.control_points(), across, up, &polygon);
-      AppendCurve(span.curve, across, up, &curve);
-    }
-    panel.series.push_back(std::move(polygon));
-    panel.series.push_back(std::move(curve));
-  }
-  return panel;
+  return "the true error is up to " + ShortNumber(result.error_at_most / wanted, kDigits) +
+         " times the tolerance: control_points measures from the lines of chords, beyond whose "
+         "ends "
+         "the curve may go; polygon and segment keep it";
 }
 
 }  // namespace
 
 bool SubdivideCurves(const std::vector<BezierPath>& paths, CutRule* rule,
-                     const SubdivisionOptions& options, CurveSubdivision* result,
-                     std::string* error) {
+                     const SubdivisionOptions& options, const SubdivisionProgress& progress,
+                     CurveSubdivision* result, std::string* error) {
   *result = CurveSubdivision();
   result->size = BoxSideOf(paths);
+  int num_curves = 0;
+  for (const BezierPath& path : paths) num_curves += static_cast<int>(path.spans.size());
+  if (!CheckRoom(options, result->size, num_curves, error)) return false;
+  WatchedRule watched(rule, progress, num_curves);
   SubdivisionOptions part_options = options;
   part_options.reference_size = result->size;
   std::vector<double> coordinates;
@@ -121,8 +138,10 @@ bool SubdivideCurves(const std::vector<BezierPath>& paths, CutRule* rule,
     bool is_first = true;
     for (const BezierSpan& span : paths[p].spans) {
       Subdivision part;
+      part_options.max_pieces = static_cast<int>((options.max_pieces - result->num_pieces) /
+                                                 (num_curves - result->num_curves));
       const auto begin = std::chrono::steady_clock::now();
-      if (!SubdivideBy(rule, span.curve, part_options, &part, error)) return false;
+      if (!SubdivideBy(&watched, span.curve, part_options, &part, error)) return false;
       const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
       result->seconds += taken.count();
       dimension = span.curve.dimension();
@@ -133,6 +152,8 @@ bool SubdivideCurves(const std::vector<BezierPath>& paths, CutRule* rule,
   }
   result->points = Eigen::Map<const Points>(
       coordinates.data(), static_cast<Eigen::Index>(result->vertices.size()), dimension);
+  const std::string missed = MissedTolerance(options, *result);
+  if (!missed.empty()) result->message += (result->message.empty() ? "" : "; ") + missed;
   return true;
 }
 
@@ -179,21 +200,6 @@ std::string SubdivisionJson(const std::string& input, const std::string& rule,
   json["version"] = kVersion;
   json["commit"] = kGitCommit;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-FigureResult SubdivisionFigure(const std::vector<BezierPath>& paths, const CurveSubdivision& result,
-                               const std::string& stem, FileBatch* batch) {
-  const auto d = static_cast<int>(result.points.cols());
-  if (d == 1) return NoFigure(stem, "a curve of one coordinate has no picture", batch);
-  std::vector<PlotPanel> panels = {ProjectionPanel(paths, result, 0, 1)};
-  if (d == 3) {
-    panels.push_back(ProjectionPanel(paths, result, 0, 2));
-    panels.push_back(ProjectionPanel(paths, result, 1, 2));
-  }
-  if (d == 4) panels.push_back(ProjectionPanel(paths, result, 2, 3));
-  const std::string size = std::to_string(result.num_pieces) + " pieces";
-  for (PlotPanel& panel : panels) panel.title = size;
-  return DrawPlot(stem, panels, static_cast<int>(panels.size()), batch);
 }
 
 }  // namespace batten

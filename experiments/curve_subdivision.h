@@ -2,6 +2,7 @@
 #define BATTEN_EXPERIMENTS_CURVE_SUBDIVISION_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,19 +30,25 @@ struct CurveSubdivision {
   std::int64_t evaluations = 0;
   std::int64_t num_failing = 0;
   SubdivisionEnd end = SubdivisionEnd::kNotRun;  ///< The worst of any curve.
-  std::string message;                           ///< Of the first curve that ended so.
-  double seconds = 0.0;                          ///< Of the subdivision alone.
+  /// Sentences, "; " between them: of the first curve that ended so, and where control_points,
+  /// which measures from lines, leaves a true error above the tolerance.
+  std::string message;
+  double seconds = 0.0;  ///< Of the subdivision alone.
   /// The Hausdorff distance of polylines and curves is no more than `error_at_most`, and of one
   /// curve no less than `error_at_least` (NaN for more curves).
   double error_at_most = 0.0;
   double error_at_least = 0.0;
 };
 
-/// Tolerances are relative to the whole drawing. False with one sentence in `error` where the rule
-/// or its options do not fit.
+/// Is told now and then what fraction is done, and what is at work.
+using SubdivisionProgress = std::function<void(double fraction, const std::string& text)>;
+
+/// Tolerances are relative to the whole drawing, and `max_pieces` is of all its curves: each may
+/// have an equal share of what those before it left. `progress` may be empty. False with one
+/// sentence in `error` where the rule or its options do not fit.
 bool SubdivideCurves(const std::vector<BezierPath>& paths, CutRule* rule,
-                     const SubdivisionOptions& options, CurveSubdivision* result,
-                     std::string* error);
+                     const SubdivisionOptions& options, const SubdivisionProgress& progress,
+                     CurveSubdivision* result, std::string* error);
 
 /// CSV of the polylines: `t,x,y`, with `path` in front where there are several.
 std::string PolylineCsv(const CurveSubdivision& result);
@@ -49,7 +56,7 @@ std::string PolylineCsv(const CurveSubdivision& result);
 std::string SubdivisionJson(const std::string& input, const std::string& rule,
                             const OptionValues& rule_options, const SubdivisionOptions& options,
                             const CurveSubdivision& result);
-/// Control polygons, curves and the polylines' vertices; in space their projections.
+/// Control polygons, curves, polylines and their vertices; in space their projections.
 FigureResult SubdivisionFigure(const std::vector<BezierPath>& paths, const CurveSubdivision& result,
                                const std::string& stem, FileBatch* batch);
 

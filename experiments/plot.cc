@@ -112,12 +112,14 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
     // A picture of a curve needs no numbers; a graph needs room for its axis.
     commands += panel.equal_scale
                     ? "set size ratio -1\nunset border\nunset tics\nset xrange [*:*]\nset offsets "
-                      "graph 0.05, graph 0.05, graph 0.05, graph 0.05\nset margins 1, "
+                      "graph 0.05, graph 0.05, graph 0.05, graph 0.05\nset margins " +
+                          std::string(panel.y_label.empty() ? "1, " : "4, ")
                     : "set size noratio\nset border 3 linewidth 0.8\nset tics nomirror out scale "
                       "0.6 font ',10'\nset offsets 0, 0, 0, 0\n" +
                           NamedTics(panel.x_names) + "set margins 10, ";
-    commands +=
-        std::to_string(LegendWidth(panel)) + (panel.equal_scale ? ", 1, 2.5\n" : ", 4.5, 2.5\n");
+    commands += std::to_string(LegendWidth(panel)) + (!panel.equal_scale      ? ", 4.5, 2.5\n"
+                                                      : panel.x_label.empty() ? ", 1, 2.5\n"
+                                                                              : ", 2.5, 2.5\n");
     commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
                 Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
     commands += panel.legend ? "set key at graph 1.03, graph 1 left top vertical Left reverse "

@@ -20,20 +20,27 @@ bool EndsWith(const std::string& text, const std::string& ending) {
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-/// Rows of numbers of one length; false where it is anything else.
-bool PointsFromJson(const Json& rows, Points* points) {
-  if (!rows.is_array() || rows.empty() || !rows[0].is_array() || rows[0].empty() ||
-      rows[0].size() > kMaxDimension) {
-    return false;
+/// The key `control_points` of an object; refuses the first row that is not like the others.
+bool ControlPoints(const StrictObject& object, const Json& json, Points* points) {
+  const std::string key = "control_points";
+  constexpr char kAllowed[] = "a list of points of 1 to 4 coordinates";
+  if (!json.contains(key) || !json.at(key).is_array() || json.at(key).empty()) {
+    return object.Refuse(key, kAllowed);
   }
-  points->resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
-  for (Eigen::Index j = 0; j < points->rows(); ++j) {
-    const Json& row = rows[static_cast<std::size_t>(j)];
-    if (!row.is_array() || static_cast<Eigen::Index>(row.size()) != points->cols()) return false;
-    for (Eigen::Index c = 0; c < points->cols(); ++c) {
-      const Json& number = row[static_cast<std::size_t>(c)];
-      if (!number.is_number()) return false;
-      (*points)(j, c) = number.get<double>();
+  const Json& rows = json.at(key);
+  const std::size_t d = rows[0].is_array() ? rows[0].size() : 0;
+  if (d < 1 || d > kMaxDimension) return object.Refuse(key + "/0", "a point of 1 to 4 coordinates");
+  points->resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(d));
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const std::string place = key + "/" + std::to_string(j);
+    if (!rows[j].is_array() || rows[j].size() != d) {
+      return object.Refuse(place, "a point of " + std::to_string(d) + " coordinates, as the first");
+    }
+    for (std::size_t c = 0; c < d; ++c) {
+      if (!rows[j][c].is_number())
+        return object.Refuse(place + "/" + std::to_string(c), "a number");
+      (*points)(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(c)) =
+          rows[j][c].get<double>();
     }
   }
   return true;
@@ -64,10 +71,7 @@ bool FromSpline(const std::string& path, const Json& json, std::vector<BezierPat
     return false;
   }
   Points points;
-  const Json& inner = json.at("spline");
-  if (!inner.contains("control_points") || !PointsFromJson(inner.at("control_points"), &points)) {
-    return spline.Refuse("control_points", "a list of points of 1 to 4 coordinates");
-  }
+  if (!ControlPoints(spline, json.at("spline"), &points)) return false;
   std::string reason;
   std::optional<BsplineBasis> basis = BsplineBasis::Make(degree, periodic, knots, &reason);
   if (!basis) return spline.Complain("knots", reason);
@@ -75,6 +79,7 @@ bool FromSpline(const std::string& path, const Json& json, std::vector<BezierPat
     return spline.Refuse("control_points",
                          std::to_string(basis->num_control_points()) + " points for these knots");
   }
+  if (!points.allFinite()) return spline.Refuse("control_points", "finite numbers");
   paths->push_back({BezierSpansOf(BsplineCurve(std::move(*basis), std::move(points)))});
   return true;
 }
@@ -86,10 +91,7 @@ bool FromJson(const std::string& path, std::vector<BezierPath>* paths, std::stri
     return FromSpline(path, json, paths, error);
   }
   Points points;
-  if (!PointsFromJson(json.at("control_points"), &points)) {
-    return StrictObject(path, "", &json, error)
-        .Refuse("control_points", "a list of points of 1 to 4 coordinates");
-  }
+  if (!ControlPoints(StrictObject(path, "", &json, error), json, &points)) return false;
   return OneCurve(path + ": /control_points: ", std::move(points), paths, error);
 }
 
@@ -106,10 +108,12 @@ bool FromPoints(const std::string& path, std::vector<BezierPath>* paths, std::st
 
 }  // namespace
 
-bool ReadBezierFile(const std::string& path, std::vector<BezierPath>* paths, std::string* error) {
+bool ReadBezierFile(const std::string& path, std::vector<BezierPath>* paths, std::string* left_out,
+                    std::string* error) {
   paths->clear();
+  left_out->clear();
   if (EndsWith(path, ".json")) return FromJson(path, paths, error);
-  if (EndsWith(path, ".svg")) return ReadSvgPaths(path, paths, error);
+  if (EndsWith(path, ".svg")) return ReadSvgPaths(path, paths, left_out, error);
   return FromPoints(path, paths, error);
 }
 

@@ -98,9 +98,12 @@ bool StrictObject::Complain(const std::string& key, const std::string& sentence)
 }
 
 bool StrictObject::Refuse(const std::string& key, const std::string& allowed) const {
-  const std::size_t slash = key.find('/');
+  std::size_t slash = key.find('/');
   const Json* value = key.empty() ? json_ : Find(key.substr(0, slash));
-  if (slash != std::string::npos) value = &value->at(std::stoul(key.substr(slash + 1)));
+  while (slash != std::string::npos) {  // entries of lists
+    value = &value->at(std::stoul(key.substr(slash + 1)));
+    slash = key.find('/', slash + 1);
+  }
   return Complain(key, "found " + FoundText(value) + "; allowed: " + allowed);
 }
 

@@ -43,7 +43,7 @@ class StrictObject {
   /// Whether `key` holds a list.
   bool IsList(const std::string& key) const;
   /// False, with `FILE: POINTER/key: found ...; allowed: ` and `allowed`. `key` may go deeper:
-  /// "terms/2".
+  /// "terms/2", "control_points/2/0".
   bool Refuse(const std::string& key, const std::string& allowed) const;
   /// False, with `FILE: POINTER/key: ` and `sentence`.
   bool Complain(const std::string& key, const std::string& sentence) const;

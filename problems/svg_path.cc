@@ -1,13 +1,11 @@
 #include "problems/svg_path.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "cost_functions/options.h"
-#include "problems/input_file.h"
 
 namespace batten {
 namespace {
@@ -24,8 +22,17 @@ class PathScanner {
 
   std::size_t place() const { return place_; }
   bool AtEnd() {
-    SkipSeparators();
+    SkipSpace();
     return place_ == text_.size();
+  }
+  /// What may stand between two numbers: space with one comma or without. Whether there was a
+  /// comma.
+  bool SkipComma() {
+    SkipSpace();
+    if (place_ == text_.size() || text_[place_] != ',') return false;
+    ++place_;
+    SkipSpace();
+    return true;
   }
   bool AtNumber() {
     return !AtEnd() && (std::isdigit(Byte(place_)) != 0 ||
@@ -70,10 +77,8 @@ class PathScanner {
     const std::size_t end = PastDigits(digits);
     return end > digits ? end : place;
   }
-  void SkipSeparators() {
-    while (place_ < text_.size() && (std::isspace(Byte(place_)) != 0 || text_[place_] == ',')) {
-      ++place_;
-    }
+  void SkipSpace() {
+    while (place_ < text_.size() && std::isspace(Byte(place_)) != 0) ++place_;
   }
 
   std::string_view text_;
@@ -171,15 +176,25 @@ class PathParser {
       builder_.Close();
       return true;
     }
-    do {
+    is_first_number_ = true;
+    bool goes_on = true;
+    while (goes_on) {
       if (!RunGroup()) {
         *error = "found " + scanner_.Found() + "; allowed: a number up to 1e150 in size";
         return false;
       }
       // Further pairs after a move are lines.
       if (command_ == 'M') command_ = 'L';
-    } while (scanner_.AtNumber());
+      is_first_number_ = scanner_.SkipComma();  // a comma there calls for another group
+      goes_on = is_first_number_ || scanner_.AtNumber();
+    }
     return true;
+  }
+
+  std::optional<double> Number() {
+    if (!is_first_number_) scanner_.SkipComma();
+    is_first_number_ = false;
+    return scanner_.Number();
   }
 
   bool RunGroup() {
@@ -187,7 +202,7 @@ class PathParser {
     switch (command_) {
       case 'H':
       case 'V': {
-        const std::optional<double> number = scanner_.Number();
+        const std::optional<double> number = Number();
         if (!number) return false;
         Point point = builder_.here();
         const int c = command_ == 'H' ? 0 : 1;
@@ -225,7 +240,7 @@ class PathParser {
 
   bool ReadPoint(const Point& base, Point* point) {
     for (int c = 0; c < 2; ++c) {
-      const std::optional<double> number = scanner_.Number();
+      const std::optional<double> number = Number();
       if (!number) return false;
       (*point)[c] = base[c] + *number;
     }
@@ -238,43 +253,9 @@ class PathParser {
   PathBuilder builder_;
   char letter_ = 'M';
   char command_ = 'M';
+  bool is_first_number_ = true;  // no comma may stand before it
   std::size_t failed_at_ = 0;
 };
-
-std::string PlaceIn(const std::string& file, const std::string& text, std::size_t offset) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
-  const auto line = 1 + std::count(text.begin(), end, '\n');
-  const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
-  const std::size_t column = offset - (newline == std::string::npos ? 0 : newline + 1) + 1;
-  return file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";
-}
-
-/// Where path data stands in a file.
-struct DataRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
-/// The attribute d of each path element.
-std::vector<DataRange> FindPathData(const std::string& text) {
-  std::vector<DataRange> ranges;
-  constexpr std::string_view kElement = "<path";
-  std::size_t from = text.find(kElement);
-  while (from != std::string::npos) {
-    const std::size_t element_end = std::min(text.find('>', from), text.size());
-    for (std::size_t at = from + kElement.size(); at + 3 < element_end; ++at) {
-      const bool begins = std::isspace(static_cast<unsigned char>(text[at])) != 0;
-      const char quote = text[at + 3];
-      if (!begins || text.compare(at + 1, 2, "d=") != 0 || (quote != '"' && quote != '\''))
-        continue;
-      const std::size_t begin = at + 4;
-      ranges.push_back({begin, std::min(text.find(quote, begin), element_end)});
-      break;
-    }
-    from = text.find(kElement, element_end);
-  }
-  return ranges;
-}
 
 }  // namespace
 
@@ -283,32 +264,6 @@ bool ParseSvgPath(std::string_view text, std::vector<BezierPath>* paths, std::si
   PathParser parser(text, paths);
   if (parser.Run(error)) return true;
   *offset = parser.failed_at();
-  return false;
-}
-
-bool ReadSvgPaths(const std::string& path, std::vector<BezierPath>* paths, std::string* error) {
-  std::string text;
-  if (!ReadWholeFile(path, &text, error)) return false;
-  std::vector<DataRange> ranges = {{0, text.size()}};
-  if (text.find('<') != std::string::npos) {
-    const std::size_t transform = text.find("transform=");
-    if (transform != std::string::npos) {
-      *error = PlaceIn(path, text, transform) + "found a transform; allowed: paths without one";
-      return false;
-    }
-    ranges = FindPathData(text);
-  }
-  paths->clear();
-  for (const DataRange& range : ranges) {
-    std::size_t offset = 0;
-    const std::string_view data =
-        std::string_view(text).substr(range.begin, range.end - range.begin);
-    if (ParseSvgPath(data, paths, &offset, error)) continue;
-    *error = PlaceIn(path, text, range.begin + offset) + *error;
-    return false;
-  }
-  if (!paths->empty()) return true;
-  *error = path + ": found no path with a curve; allowed: <path d=\"M ... C ...\"/> or path data";
   return false;
 }
 

@@ -22,11 +22,6 @@ struct BezierPath {
 bool ParseSvgPath(std::string_view text, std::vector<BezierPath>* paths, std::size_t* offset,
                   std::string* error);
 
-/// The path data of all `<path d="...">` of an SVG file, or of a file that holds nothing but path
-/// data. False with `FILE:LINE:COLUMN: found ...; allowed: ...`; a `transform` anywhere is refused,
-/// since it is not applied.
-bool ReadSvgPaths(const std::string& path, std::vector<BezierPath>* paths, std::string* error);
-
 }  // namespace batten
 
 #endif  // BATTEN_PROBLEMS_SVG_PATH_H_

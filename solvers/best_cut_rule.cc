@@ -33,7 +33,8 @@ BestCutRule::BestCutRule(CutMeasure measure, const OptionValues& options)
 
 bool BestCutRule::IsSearched(const CutTrial& trial) const {
   if (trial.depth() >= num_rounds_ || trial.degree() < 2) return false;
-  return !is_automatic_ || SquaredLegSlope(trial.degree(), trial.dimension(), trial.points()) > 1.0;
+  return !is_automatic_ ||
+         SquaredLegSlope(trial.degree(), trial.dimension(), trial.points(), 0.0) > 1.0;
 }
 
 double BestCutRule::Choose(CutTrial* trial) {

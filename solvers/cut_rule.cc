@@ -15,8 +15,9 @@ bool SubdivideBy(CutRule* rule, const BezierCurve& curve, const SubdivisionOptio
     return false;
   }
   rule->Start(curve, options);
-  return Subdivide(
-      curve, [rule](CutTrial* trial) { return rule->Choose(trial); }, options, result, error);
+  CutChoice choice;
+  if (!rule->AlwaysHalves()) choice = [rule](CutTrial* trial) { return rule->Choose(trial); };
+  return Subdivide(curve, choice, options, result, error);
 }
 
 }  // namespace batten

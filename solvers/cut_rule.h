@@ -27,6 +27,8 @@ class CutRule {
                                      const SubdivisionOptions& options) const;
   /// Before the first piece of a curve.
   virtual void Start(const BezierCurve& /*curve*/, const SubdivisionOptions& /*options*/) {}
+  /// Choose() is 1/2 for every piece, and need not be called.
+  virtual bool AlwaysHalves() const { return false; }
   /// Where the piece is cut, in (0, 1) of it.
   virtual double Choose(CutTrial* trial) = 0;
 };

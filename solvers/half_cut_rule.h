@@ -11,6 +11,7 @@ class HalfCutRule final : public CutRule {
   static CutRuleInfo ClassInfo();
   explicit HalfCutRule(const OptionValues& /*options*/) {}
   CutRuleInfo Info() const override { return ClassInfo(); }
+  bool AlwaysHalves() const override { return true; }
   double Choose(CutTrial* trial) override { return CutAtHalf(trial); }
 };
 

@@ -18,7 +18,7 @@ CutRuleInfo LongestCutRule::ClassInfo() {
   info.name = "longest";
   info.summary = "behind the longest first part that still passes, by a safeguarded secant";
   info.source = "docs/cut_rules/longest.md; greedy cuts: Tomek, IEEE Trans. Computers C-23, 1974";
-  constexpr double kLeast = 0.88, kAim = 0.97;
+  constexpr double kLeast = 0.88, kAim = 0.985;
   constexpr int kTrials = 6, kMostTrials = 100;
   info.options = {
       OptionInfo::Real("least", kLeast, 0.0, 1.0,

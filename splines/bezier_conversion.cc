@@ -20,13 +20,19 @@ int HighestDegree(const std::vector<BezierSpan>& spans) {
   return degree;
 }
 
+double RoundingOf(const Points& points) {
+  return BezierRounding(static_cast<int>(points.rows()) - 1, static_cast<int>(points.cols()),
+                        points.data());
+}
+
 /// The end of one curve is the begin of the next, to the rounding of both.
-bool Meet(const BezierCurve& first, const BezierCurve& second) {
-  const Points& a = first.control_points();
-  const Points& b = second.control_points();
-  const double rounding = BezierRounding(first.degree(), first.dimension(), a.data()) +
-                          BezierRounding(second.degree(), second.dimension(), b.data());
-  return (a.row(a.rows() - 1) - b.row(0)).cwiseAbs().maxCoeff() <= rounding;
+bool Meet(const Points& a, const Points& b) {
+  return (a.row(a.rows() - 1) - b.row(0)).cwiseAbs().maxCoeff() <= RoundingOf(a) + RoundingOf(b);
+}
+
+/// Both sides of a joint are rounded by themselves; where the curve jumps they are left alone.
+void ShareEnd(Points* points, const Points& next) {
+  if (Meet(*points, next)) points->row(points->rows() - 1) = next.row(0);
 }
 
 bool CanBeJoined(const std::vector<BezierSpan>& spans, bool periodic, std::string* error) {
@@ -47,7 +53,8 @@ bool CanBeJoined(const std::vector<BezierSpan>& spans, bool periodic, std::strin
       return Fail("the interval of curve " + std::to_string(i) + " does not lead to the next",
                   error);
     }
-    if ((!is_last || periodic) && !Meet(spans[i].curve, next.curve)) {
+    if ((!is_last || periodic) &&
+        !Meet(spans[i].curve.control_points(), next.curve.control_points())) {
       return Fail("curve " + std::to_string(i) + " does not end where the next begins", error);
     }
   }
@@ -74,19 +81,24 @@ std::vector<BezierSpan> BezierSpansOf(const BsplineCurve& curve) {
   const BsplineBasis& basis = curve.basis();
   const int p = basis.degree();
   const std::vector<double>& knots = basis.knots();
-  std::vector<BezierSpan> spans;
+  std::vector<double> breaks = {basis.domain_begin()};
+  std::vector<Points> pieces;
   for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
     if (!(knots[span] < knots[span + 1])) continue;
     Points window(p + 1, curve.dimension());
     for (int j = 0; j <= p; ++j) {
       window.row(j) = curve.control_points().row(basis.ControlPointIndex(span - p + j));
     }
-    Points points = window;
+    pieces.push_back(window);
     BezierPoints(p, curve.dimension(), knots.data(), span, window.data(), knots[span],
-                 knots[span + 1], points.data());
-    std::optional<BezierCurve> made = BezierCurve::Make(std::move(points), nullptr);
-    if (!made) continue;  // it overflows
-    spans.push_back({std::move(*made), knots[span], knots[span + 1]});
+                 knots[span + 1], pieces.back().data());
+    breaks.push_back(knots[span + 1]);
+  }
+  std::vector<BezierSpan> spans;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const bool is_last = i + 1 == pieces.size();
+    if (!is_last || basis.periodic()) ShareEnd(&pieces[i], pieces[is_last ? 0 : i + 1]);
+    spans.push_back({BezierCurve::Make(pieces[i], nullptr).value(), breaks[i], breaks[i + 1]});
   }
   return spans;
 }

@@ -18,8 +18,9 @@ struct BezierSpan {
 };
 
 /// The polynomial pieces of a B-spline curve, open or periodic, in order: one per span that is not
-/// empty, by the blossom (Ramshaw 1987; Farin, sec. 8.6). Neighbours share their end point to
-/// rounding.
+/// empty, by the blossom (Ramshaw 1987; Farin, sec. 8.6). Neighbours, and last and first where it
+/// is periodic, share their end point. Convex combinations of control points, which do not
+/// overflow.
 std::vector<BezierSpan> BezierSpansOf(const BsplineCurve& curve);
 
 /// The B-spline curve that runs through `spans`, each over its own interval: knots stand p-fold at

@@ -1,5 +1,6 @@
 #include "splines/bezier_cut_value.h"
 
+#include "splines/bezier_hull.h"
 #include "splines/bezier_measures.h"
 
 namespace batten {

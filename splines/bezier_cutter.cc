@@ -33,13 +33,12 @@ StopValue PieceCutter::Try(double u) {
   return value;
 }
 
-void PieceCutter::Choose(const double* points, const PieceInterval& piece, bool passes) {
+void PieceCutter::Choose(const double* points, const PieceInterval& piece) {
   points_ = points;
   begin_ = piece.begin;
   end_ = piece.end;
   depth_ = piece.depth;
   chain_ = piece.chain;
-  passes_ = passes;
   tried_ = std::nan("");
   const double u = rule_(this);
   is_tried_ = u == tried_;
@@ -96,12 +95,7 @@ void PieceCutter::ComputeAfresh(const PieceInterval& piece, const double* begin_
             unused.data());
   CutBezier(degree_, dimension_, piece.begin / piece.end, up_to_end.data(), unused.data(), points);
   cuts_ += 2;
-  std::copy(begin_point, begin_point + dimension_, points);
-}
-
-bool PieceCutter::Passes(const double* points) {
-  ++tests_;
-  return stop_->Passes(points);
+  if (begin_point != nullptr) std::copy(begin_point, begin_point + dimension_, points);
 }
 
 }  // namespace batten

@@ -23,9 +23,25 @@ class PieceCutter final : public CutTrial {
   PieceCutter(const BezierCurve& curve, const StopTest& test, const CutChoice& rule);
 
   std::size_t size() const { return size_; }  ///< Numbers of a piece: (n + 1) d.
+  /// The rule is empty, and nobody need be asked.
+  bool always_halves() const { return !rule_; }
+  /// Cuts `points` at 1/2; `second`, or both, may begin where `points` do.
+  void Halve(const double* points, double* first, double* second) {
+    CutBezier(degree_, dimension_, 0.5, points, first, second);
+    ++cuts_;
+  }
+  /// The same, where all cuts so far were at 1/2; `piece` becomes the second part's interval, the
+  /// first part's is returned.
+  PieceInterval Halve(const double* points, PieceInterval* piece, double* first, double* second) {
+    Halve(points, first, second);
+    const double middle = piece->begin + 0.5 * (piece->end - piece->begin);  // no rounding
+    const PieceInterval first_part = {piece->begin, middle, piece->depth + 1, piece->chain + 1};
+    *piece = {middle, piece->end, piece->depth + 1, piece->chain + 1};
+    return first_part;
+  }
   StopValue Try(double u) override;
   /// Asks the rule where to cut the piece.
-  void Choose(const double* points, const PieceInterval& piece, bool passes);
+  void Choose(const double* points, const PieceInterval& piece);
   /// The chosen cut; `second` may be the piece's own points.
   void Cut(double* first, double* second);
   /// The same, where each points to size() numbers of the caller's: exchanged with those of a
@@ -35,10 +51,17 @@ class PieceCutter final : public CutTrial {
   bool first_passes() const { return is_tried_ && tried_passes_; }
   PieceInterval first_interval() const;
   PieceInterval second_interval() const;
-  /// The piece that begins with the d coordinates `begin_point`, from the curve's own control
-  /// points.
+  /// The piece from the curve's own control points; it shall begin with the d coordinates
+  /// `begin_point` (null: with what is computed).
   void ComputeAfresh(const PieceInterval& piece, const double* begin_point, double* points);
-  bool Passes(const double* points);
+  bool Passes(const double* points) {
+    ++tests_;
+    return stop_->Passes(points);
+  }
+  StopValue Measure(const double* points) {
+    ++tests_;
+    return stop_->Value(points);
+  }
 
   std::int64_t cuts() const { return cuts_ + own_evaluations_; }
   std::int64_t evaluations() const { return tests_ + own_evaluations_; }

@@ -1,7 +1,6 @@
 #include "splines/bezier_measures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -138,32 +137,21 @@ Quotient SquaredPolygonDistanceIn(int n, const double* points) {
 }
 
 template <int d>
-double SquaredLegSlopeIn(int n, const double* points) {
+double SquaredLegSlopeIn(int n, const double* points, double squared_rounding) {
   double chord[d], leg[d];
   Subtract<d>(points + n * d, points, chord);
+  const double squared_chord = Dot<d>(chord, chord);
   double largest = 0.0;
   for (int i = 0; i < n; ++i) {
     Subtract<d>(points + (i + 1) * d, points + i * d, leg);
-    if (Dot<d>(leg, leg) == 0.0) continue;
+    if (Dot<d>(leg, leg) <= squared_rounding) continue;
     const double along = Dot<d>(leg, chord);
     if (!(along > 0.0)) return std::numeric_limits<double>::infinity();
-    largest = std::max(largest, SquaredCross<d>(leg, chord) / (along * along));
+    const double squared_cross = SquaredCross<d>(leg, chord);
+    if (squared_cross <= squared_rounding * squared_chord) continue;
+    largest = std::max(largest, squared_cross / (along * along));
   }
   return largest;
-}
-
-struct PlanePoint {
-  double x;
-  double y;
-  int index;
-  bool operator<(const PlanePoint& other) const {
-    return x < other.x || (x == other.x && y < other.y);
-  }
-};
-
-/// Positive where a, b, c turn left: twice the area of their triangle.
-double Turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 }  // namespace
@@ -215,48 +203,17 @@ Quotient Flatness(int degree, int dimension, const double* points) {
   return FoldDistances<Sum>(degree, dimension, points);
 }
 
-int ConvexHull(int degree, const double* points, int* indices) {
-  const int count = degree + 1;
-  std::array<PlanePoint, kMaxBezierDegree + 1> sorted, chain;
-  for (int i = 0; i < count; ++i) sorted[i] = {points[2 * i], points[2 * i + 1], i};
-  std::sort(sorted.begin(), sorted.begin() + count);
-  int num_vertices = 0;
-  // The lower chain from left to right, then the upper one from right to left.
-  for (int pass = 0; pass < 2; ++pass) {
-    int size = 0;
-    for (int i = 0; i < count; ++i) {
-      const PlanePoint& next = sorted[pass == 0 ? i : count - 1 - i];
-      while (size >= 2 && Turn(chain[size - 2], chain[size - 1], next) <= 0.0) --size;
-      chain[size++] = next;
-    }
-    // Each chain ends where the other begins.
-    for (int k = 0; k + 1 < size; ++k) indices[num_vertices++] = chain[k].index;
-  }
-  return num_vertices;
-}
-
-double HullArea(int degree, const double* points) {
-  std::array<int, kMaxBezierDegree + 2> hull;
-  const int count = ConvexHull(degree, points, hull.data());
-  const auto vertex = [&](int k) {
-    return PlanePoint{points[2 * hull[k]], points[2 * hull[k] + 1], hull[k]};
-  };
-  // The fan of triangles from the first point: nothing cancels far from the origin.
-  double twice_area = 0.0;
-  for (int k = 1; k + 1 < count; ++k) twice_area += Turn(vertex(0), vertex(k), vertex(k + 1));
-  return 0.5 * twice_area;
-}
-
-double SquaredLegSlope(int degree, int dimension, const double* points) {
+double SquaredLegSlope(int degree, int dimension, const double* points, double rounding) {
+  const double squared = rounding * rounding;
   switch (dimension) {
     case 1:
-      return SquaredLegSlopeIn<1>(degree, points);
+      return SquaredLegSlopeIn<1>(degree, points, squared);
     case 2:
-      return SquaredLegSlopeIn<2>(degree, points);
+      return SquaredLegSlopeIn<2>(degree, points, squared);
     case 3:
-      return SquaredLegSlopeIn<3>(degree, points);
+      return SquaredLegSlopeIn<3>(degree, points, squared);
     default:
-      return SquaredLegSlopeIn<4>(degree, points);
+      return SquaredLegSlopeIn<4>(degree, points, squared);
   }
 }
 

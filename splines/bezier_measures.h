@@ -28,17 +28,11 @@ bool IsNearSegment(int degree, int dimension, const double* points, double squar
 /// Flatness: the sum of the squared distances of the inner control points from the chord's line.
 Quotient Flatness(int degree, int dimension, const double* points);
 
-/// The corners of the convex hull of planar points (d = 2), counter-clockwise from the one of least
-/// x, by Andrew's chains: indices[0..result - 1], with room for n + 2. No corner but one of
-/// repeated points; none inside an edge. Fewer than 3 where the points lie on a line.
-int ConvexHull(int degree, const double* points, int* indices);
-/// Area of the convex hull of planar points, in squared units.
-double HullArea(int degree, const double* points);
-
 /// The largest squared tangent of the angle between a leg of the control polygon and the chord: no
 /// tangent of the curve turns further from it. Infinity from a right angle on, or where the chord
-/// is zero and a leg is not. Legs of length zero have no direction and are left out.
-double SquaredLegSlope(int degree, int dimension, const double* points);
+/// is zero and a leg is not. Legs no longer than `rounding` have no direction and are left out;
+/// those that lead no farther than that from the chord's direction are taken as straight.
+double SquaredLegSlope(int degree, int dimension, const double* points, double rounding);
 
 /// Squared distance of a point from the segment [a, b].
 double SquaredSegmentDistance(int dimension, const double* point, const double* a, const double* b);

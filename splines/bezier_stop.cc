@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "splines/bezier_distance.h"
+#include "splines/bezier_hull.h"
 #include "splines/bezier_measures.h"
 
 namespace batten {
@@ -48,7 +49,8 @@ Limits LimitsOf(StopMeasure measure, double tolerance, double side, double round
       break;
   }
   const double tangent = std::tan(tolerance);
-  return {tangent * tangent, 0.0};
+  const double lowest = side > 0.0 ? rounding / side : 0.0;
+  return {tangent * tangent, lowest * lowest};
 }
 
 }  // namespace
@@ -123,7 +125,7 @@ StopValue StopTest::Measured(const double* points) const {
     case StopMeasure::kAngle:
       break;
   }
-  return {SquaredLegSlope(degree_, dimension_, points), limit_, power()};
+  return {SquaredLegSlope(degree_, dimension_, points, rounding_), limit_, power()};
 }
 
 int StopTest::power() const {

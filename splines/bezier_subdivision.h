@@ -23,8 +23,6 @@ class CutTrial {
   double end() const { return end_; }
   int depth() const { return depth_; }  ///< How many cuts it stems from; uniform: finished rounds.
   const StopTest& stop() const { return *stop_; }
-  /// The piece is known to pass already: uniform rounds cut it all the same.
-  bool passes() const { return passes_; }
 
   /// Cuts at u in (0, 1) of the piece, and tests the first part.
   virtual StopValue Try(double u) = 0;
@@ -41,13 +39,13 @@ class CutTrial {
   double end_ = 1.0;
   int depth_ = 0;
   const StopTest* stop_ = nullptr;
-  bool passes_ = false;
   const double* first_ = nullptr;
   const double* second_ = nullptr;
   std::int64_t own_evaluations_ = 0;
 };
 
-/// Where a piece is to be cut, in (0, 1) of it; anything else is our bug: std::logic_error.
+/// Where a piece is to be cut, in (0, 1) of it; anything else is our bug: std::logic_error. An
+/// empty one cuts at 1/2, as CutAtHalf() does, without being asked each time.
 using CutChoice = std::function<double(CutTrial*)>;
 
 enum class SubdivisionMode {
@@ -58,7 +56,8 @@ const char* ToString(SubdivisionMode mode);
 bool FromString(const std::string& text, SubdivisionMode* mode);
 
 struct SubdivisionOptions {
-  StopMeasure stop = StopMeasure::kControlPoints;
+  /// By default one that bounds the true error.
+  StopMeasure stop = StopMeasure::kPolygon;
   /// >= 0 and finite; of kAngle: radians, below pi / 2. See StopMeasure.
   double relative_tolerance = 1e-5;
   /// > 0: L, to which tolerances are relative, of a curve that is part of a longer one; 0: that of
@@ -67,7 +66,8 @@ struct SubdivisionOptions {
   SubdivisionMode mode = SubdivisionMode::kAdaptive;
   /// 1 to 50: no piece narrower than 2^-max_depth of [0, 1] is cut; uniform: so many rounds.
   int max_depth = 40;
-  /// 1 to 2^24: no more pieces than that.
+  /// 1 to 2^24: no more pieces than that. Where the rule needs more in adaptive mode, they are made
+  /// anew: so many, the piece that is farthest from passing being halved each time.
   int max_pieces = 1 << 20;
   /// Whether Subdivision::pieces is filled.
   bool keep_pieces = false;
@@ -84,11 +84,13 @@ struct Subdivision {
   Points vertices;  ///< (k + 1) x d: the pieces' ends, the curve's points there.
   Points pieces;    ///< k (n + 1) x d if asked for: control points, piece by piece.
   int rounds = 0;   ///< Uniform: rounds of cuts. Adaptive: the most cuts that a piece stems from.
-  std::int64_t cuts = 0;         ///< De Casteljau triangles, trials included.
-  std::int64_t evaluations = 0;  ///< Stop tests, and a rule's evaluations of its objective.
-  int num_failing = 0;           ///< Pieces that do not pass; 0 unless a limit was hit.
+  std::int64_t cuts = 0;  ///< De Casteljau triangles, trials included.
+  /// Stop tests, and a rule's evaluations of its objective. Uniform rounds test until one fails.
+  std::int64_t evaluations = 0;
+  int num_failing = 0;  ///< Pieces that do not pass; 0 unless a limit was hit.
   SubdivisionEnd end = SubdivisionEnd::kNotRun;
-  std::string message;  ///< One sentence where a limit was hit or the tolerance was raised.
+  /// One sentence where a limit was hit or the tolerance was raised, or both.
+  std::string message;
 
   int num_pieces() const { return static_cast<int>(parameters.size()) - 1; }
 };

@@ -8,15 +8,17 @@
 #include "solvers/cut_rule_registry.h"
 #include "tools/command.h"
 #include "tools/output_files.h"
+#include "tools/progress.h"
 #include "tools/run_flags.h"
 
 DEFINE_string(rule, "longest",
               "Where pieces are cut, with options, as in flatness/rounds=3 (batten list rules).");
 DEFINE_string(stop, batten::ToString(batten::SubdivisionOptions().stop),
-              "What must be small on a piece: control_points (largest distance from the chord's "
-              "line), polygon (from its segment: bounds the true error), "
-              "hull_area, flatness (sum of squared distances), segment (distance of the curve "
-              "itself from the chord's segment), angle (of the control polygon with the chord).");
+              "What must be small on a piece: polygon (largest distance of a control point from "
+              "the chord's segment) and segment (of the curve itself) bound the true error; "
+              "control_points (distance from the chord's line, the rule of most papers), flatness "
+              "(sum of its squares), hull_area (planar curves) and angle (of the control polygon "
+              "with the chord) do not.");
 DEFINE_double(relative_tolerance, batten::SubdivisionOptions().relative_tolerance,
               "Of the stop measure, relative to the larger side of the control points' box (areas "
               "and squares: to its square); of angle: radians, below pi / 2.");
@@ -24,9 +26,11 @@ DEFINE_string(subdivision, batten::ToString(batten::SubdivisionOptions().mode),
               "adaptive: only pieces that fail are cut; uniform: every piece, until all pass.");
 DEFINE_int32(max_depth, batten::SubdivisionOptions().max_depth,
              "No piece narrower than 2^-N of its curve is cut; uniform: most rounds.");
-DEFINE_int32(max_pieces, batten::SubdivisionOptions().max_pieces, "Most pieces of one curve.");
+DEFINE_int32(max_pieces, batten::SubdivisionOptions().max_pieces,
+             "Most pieces of all curves together.");
 DEFINE_string(report, "", "JSON: pieces, rounds, cuts, evaluations, seconds, true error.");
 DECLARE_string(figure);
+DECLARE_bool(quiet);
 
 namespace batten {
 namespace {
@@ -61,6 +65,7 @@ bool OptionsFromFlags(SubdivisionOptions* options, std::string* error) {
 struct Request {
   std::string path;
   std::vector<BezierPath> curves;
+  std::string left_out;
   std::string rule_name;
   std::unique_ptr<CutRule> rule;
   OptionValues rule_options;
@@ -87,7 +92,7 @@ bool MakeRequest(const std::vector<std::string>& positional, Request* request, s
     return false;
   }
   return OptionsFromFlags(&request->options, error) &&
-         ReadBezierFile(request->path, &request->curves, error) &&
+         ReadBezierFile(request->path, &request->curves, &request->left_out, error) &&
          CheckOutputs(Outputs(), {request->path}, error);
 }
 
@@ -133,12 +138,27 @@ std::string Summary(const Request& request, const CurveSubdivision& result) {
          (result.message.empty() ? "" : "  " + result.message + "\n");
 }
 
+bool Subdivided(const Request& request, CurveSubdivision* result, std::string* reason) {
+  Progress progress(FLAGS_quiet);
+  const auto show = [&progress](double fraction, const std::string& text) {
+    progress.Show(fraction, text);
+  };
+  if (!SubdivideCurves(request.curves, request.rule.get(), request.options, show, result, reason)) {
+    return false;
+  }
+  if (!request.left_out.empty()) {
+    result->message += (result->message.empty() ? "" : "; ") + ("left out: " + request.left_out) +
+                       ", since only paths are read";
+  }
+  return true;
+}
+
 int RunSubdivide(const std::vector<std::string>& positional, CommandOutput* output) {
   Request request;
   if (!MakeRequest(positional, &request, &output->error)) return kBadInput;
   CurveSubdivision result;
   std::string reason;
-  if (!SubdivideCurves(request.curves, request.rule.get(), request.options, &result, &reason)) {
+  if (!Subdivided(request, &result, &reason)) {
     return Refuse(request.path + ": " + reason, output);
   }
   std::string not_drawn;
@@ -160,7 +180,8 @@ Command SubdivideCommand() {
   command.details = {
       "FILE: control points of one Bezier curve as CSV or rows of numbers (- is standard input), a "
       "fit.json, whose spline is cut span by span, JSON with control_points, or an SVG file, whose "
-      "paths are cut curve by curve (M, L, H, V, C, S, Q, T, Z).",
+      "paths are cut curve by curve (M, L, H, V, C, S, Q, T, Z); other shapes are left out, and "
+      "that is said.",
       "The true error is a certified upper bound of the Hausdorff distance of curves and "
       "polylines. "
       "Exit status 1: a bound on depth or pieces was hit; the polyline is written all the same."};
@@ -168,9 +189,10 @@ Command SubdivideCommand() {
       "batten subdivide curve.csv --rule=flatness --relative_tolerance=1e-5 --out=polyline.csv "
       "--figure=cut.svg",
       "batten subdivide fit.json --rule=longest --stop=segment --report=counts.json"};
-  FlagInfo figure = TextFlag("figure", "FILE", kAllowedFigure,
-                             "SVG of control polygon, curve and cuts, drawn by gnuplot; its script "
-                             "(.gp) and data (.dat) stay beside it.");
+  FlagInfo figure =
+      TextFlag("figure", "FILE", kAllowedFigure,
+               "SVG of control polygon, curve, polyline and cuts, drawn by gnuplot; its script "
+               "(.gp) and data (.dat) stay beside it.");
   command.flags = {
       TextFlag("rule", "RULE", "a rule of batten list rules, with options or without"),
       WordFlag("stop", StopMeasureNames()),
@@ -180,7 +202,8 @@ Command SubdivideCommand() {
       NumberFlag("max_pieces", "N", 1.0, kMostPieces),
       TextFlag("out", "FILE", "a file", "The polyline as CSV: t, x, y; path in front of several."),
       TextFlag("report", "FILE", "a file"),
-      std::move(figure)};
+      std::move(figure),
+      SwitchFlag("quiet")};
   command.run = &RunSubdivide;
   return command;
 }

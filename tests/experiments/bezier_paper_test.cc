@@ -201,6 +201,62 @@ TEST(BezierPaperMinima, TheGridIsJudgedByWhatItMisses) {
   EXPECT_EQ(verdict("1.2", "1.2"), "does not hold");
 }
 
+TEST(BezierPaperEqualError, AsksForAQuarterInEveryCell) {
+  const Experiment equal_error = BezierPaperEqualError();
+  const auto verdict = [&](const std::vector<std::string>& ratios) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable({"rule", "pieces_ratio"});
+    table.AddRow({"half", "1"});
+    for (const std::string& ratio : ratios) table.AddRow({"longest", ratio});
+    return Verdict(equal_error, 0, tables);
+  };
+  EXPECT_EQ(verdict({"0.75", "0.7"}), "holds");
+  EXPECT_EQ(verdict({"0.76", "0.7"}), "holds in part");
+  EXPECT_EQ(verdict({"0.76", "0.8"}), "does not hold");
+  EXPECT_EQ(verdict({}), "undecided");
+}
+
+TEST(BezierPaperMinima, ExactMustFindTheLeastOnEveryCurve) {
+  const Experiment minima = BezierPaperMinima();
+  const auto verdict = [&](const std::string& found, const std::string& ratio) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable({"measure", "method", "found", "value_over_least"});
+    table.AddRow({"flatness", "exact", "least", "1"});
+    table.AddRow({"flatness", "exact", found, ratio});
+    return Verdict(minima, 1, tables);
+  };
+  EXPECT_EQ(verdict("least", "1.0000001"), "holds");
+  EXPECT_EQ(verdict("none", "1.0000001"), "holds in part");
+  EXPECT_EQ(verdict("least", "1.1"), "holds in part");
+  EXPECT_EQ(verdict("other", "1.1"), "does not hold");
+}
+
+TEST(BezierPaperMinima, DescentIsJudgedByWhereItEnds) {
+  const Experiment minima = BezierPaperMinima();
+  const auto verdict = [&](const std::string& found) {
+    ExperimentTables tables;
+    CsvTable& table = tables[""] = CsvTable({"measure", "method", "found"});
+    table.AddRow({"flatness", "lbfgs", "least"});
+    table.AddRow({"flatness", "ceres_lm", found});
+    return Verdict(minima, 2, tables);
+  };
+  EXPECT_EQ(verdict("least"), "holds");
+  EXPECT_EQ(verdict("other"), "holds in part");
+  EXPECT_EQ(verdict("none"), "does not hold");
+}
+
+TEST(BezierPaperBestCuts, DrawBothMeasures) {
+  const Experiment best_cuts = BezierPaperBestCuts();
+  ExperimentTables tables;
+  CsvTable& table = tables[""] = CsvTable({"measure", "family", "round", "u", "cuts"});
+  table.AddRow({"flatness", "walk", "0", "0.525", "3"});
+  table.AddRow({"hull_area", "walk", "0", "0.475", "3"});
+  ASSERT_EQ(best_cuts.figures.size(), 2);
+  const std::vector<PlotPanel> hull = best_cuts.figures[1].panels(tables);
+  ASSERT_EQ(hull.size(), 1);
+  EXPECT_EQ(hull[0].series.at(0).x, std::vector<double>{0.475});
+}
+
 TEST(BezierPaperCurves, AreTheSameOnAnyMachine) {
   const Points walk = FamilyCurve("walk", 12, 0).control_points();
   EXPECT_EQ(walk.rows(), 13);
@@ -221,6 +277,13 @@ TEST(BezierPaperCurves, GlyphsAreQuadraticsAndCubics) {
   ASSERT_TRUE(GlyphCurves("ebgaramond_italic", &curves, &error)) << error;
   EXPECT_EQ(curves.size(), 201);
   for (const BezierCurve& curve : curves) EXPECT_EQ(curve.degree(), 3);
+}
+
+TEST(BezierPaperRuns, HalvingIsAskedWhereThePapersRulesAre) {
+  for (const SubdivisionSetting& setting : SubdivisionSettings()) {
+    EXPECT_EQ(RuleIn(setting, "half")->AlwaysHalves(), setting.name == "certified");
+    EXPECT_EQ(RuleIn(setting, "half")->Info().name, "half");
+  }
 }
 
 TEST(BezierPaperRuns, ComparedRulesStayBelowTheTolerance) {

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "tests/problems/scratch_folder.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -87,33 +86,14 @@ TEST(SvgPath, SaysWhatItFoundAndWhere) {
   ExpectRefused("M 0 0 C 1 1 2 2", 15, "found the end of the path");
 }
 
-TEST(SvgPath, ReadsThePathsOfAFile) {
-  const ScratchFolder folder;
-  const std::string path = folder.Write("a.svg",
-                                        "<svg>\n<path id=\"d\" fill='red'\n d='M0 0L1 1'/>\n"
-                                        "<g><path d=\"M2 2Q3 3 4 2\"></path></g></svg>");
-  std::vector<BezierPath> paths;
-  std::string error;
-  ASSERT_TRUE(ReadSvgPaths(path, &paths, &error)) << error;
-  ASSERT_EQ(paths.size(), 2);
-  EXPECT_EQ(PointsAt(paths, 1, 0), PointsOf({{2, 2}, {3, 3}, {4, 2}}));
-}
-
-TEST(SvgPath, RefusesFilesWithLineAndColumn) {
-  const ScratchFolder folder;
-  std::vector<BezierPath> paths;
-  std::string error;
-  const std::string bad = folder.Write("bad.svg", "<svg>\n<path d=\"M0 0\n L1 oops\"/></svg>");
-  EXPECT_FALSE(ReadSvgPaths(bad, &paths, &error));
-  EXPECT_EQ(error.rfind(bad + ":3:5: found \"oops\"", 0), 0) << error;
-  const std::string turned =
-      folder.Write("turned.svg", "<svg><g transform=\"scale(2)\"><path d=\"M0 0L1 1\"/></g></svg>");
-  EXPECT_FALSE(ReadSvgPaths(turned, &paths, &error));
-  EXPECT_EQ(error, turned + ":1:9: found a transform; allowed: paths without one");
-  const std::string none = folder.Write("none.svg", "<svg><circle r=\"1\"/></svg>");
-  EXPECT_FALSE(ReadSvgPaths(none, &paths, &error));
-  EXPECT_EQ(error.rfind(none + ": found no path with a curve", 0), 0) << error;
-  EXPECT_FALSE(ReadSvgPaths((folder.path() / "missing.svg").string(), &paths, &error));
+TEST(SvgPath, OneCommaMayStandBetweenTwoNumbersAndNowhereElse) {
+  EXPECT_EQ(PointsAt(Parsed("M0 , 0L1,1\n,\t2,2"), 0, 1), PointsOf({{1, 1}, {2, 2}}));
+  ExpectRefused("M0,,0", 3, "found \",0\"; allowed: a number");
+  ExpectRefused("M,0 0", 1, "found \",0 0\"; allowed: a number");
+  ExpectRefused("M0 0,L1 1", 5, "found \"L1 1\"; allowed: a number");
+  ExpectRefused("M0 0L1 1,", 9, "found the end of the path; allowed: a number");
+  ExpectRefused("M0 0L1 1z,", 9, "found \",\"; allowed: one of M");
+  ExpectRefused(",M0 0", 0, "found \",M0 0\"; allowed: M or m first");
 }
 
 }  // namespace

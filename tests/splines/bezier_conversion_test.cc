@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -26,6 +27,16 @@ TEST_P(EverySpline, ItsBezierSpansAreTheCurve) {
     ASSERT_FALSE(spans.empty());
     EXPECT_EQ(spans.front().begin, basis.domain_begin());
     EXPECT_EQ(spans.back().end, basis.domain_end());
+    const auto begin_of = [&spans](std::size_t i) {
+      return spans[i].curve.control_points().row(0).eval();
+    };
+    const auto end_of = [&spans](std::size_t i) {
+      return spans[i].curve.control_points().bottomRows(1).eval();
+    };
+    for (std::size_t i = 1; i < spans.size(); ++i) EXPECT_EQ(end_of(i - 1), begin_of(i));
+    if (basis.periodic()) {
+      EXPECT_EQ(end_of(spans.size() - 1), begin_of(0));
+    }
     for (std::size_t i = 0; i < spans.size(); ++i) {
       EXPECT_TRUE(i == 0 || spans[i].begin == spans[i - 1].end);
       for (const double s : {0.0, 0.25, 0.5}) {
@@ -97,6 +108,25 @@ TEST(BezierConversion, RefusesWhatDoesNotJoin) {
   EXPECT_EQ(error, "found degree 0; allowed in a B-spline curve: 1 to 9");
   EXPECT_FALSE(BsplineThrough({line, SpanOf({{1, 0, 0}, {2, 0, 0}}, 1, 2)}, false, &error));
   EXPECT_EQ(error, "curve 0 has another dimension than the next");
+}
+
+TEST(BezierConversion, TheLargestNumbersDoNotOverflow) {
+  const double largest = std::numeric_limits<double>::max();
+  for (int k = 1; k < 200; ++k) {
+    const BsplineBasis basis =
+        BsplineBasis::Make(2, false, {0, 0, 0, k / 201.0, k / 200.0, 1, 1, 1}, nullptr).value();
+    const BsplineCurve curve(basis, PointsOf({{largest, 0},
+                                              {largest, -largest},
+                                              {largest, largest},
+                                              {largest, -largest},
+                                              {largest, 0}}));
+    const std::vector<BezierSpan> spans = BezierSpansOf(curve);
+    ASSERT_EQ(spans.size(), 3);
+    for (const BezierSpan& span : spans) {
+      EXPECT_LE((span.curve.control_points().col(0).array() / largest - 1.0).abs().maxCoeff(),
+                4 * kEpsilon);
+    }
+  }
 }
 
 }  // namespace

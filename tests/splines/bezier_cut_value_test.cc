@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "splines/bezier_hull.h"
 #include "splines/bezier_measures.h"
 #include "tests/splines/example_splines.h"
 

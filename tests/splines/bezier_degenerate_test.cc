@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
-#include "splines/bezier_distance.h"
-#include "splines/bezier_measures.h"
-#include "splines/bezier_subdivision.h"
+#include "tests/splines/bezier_pieces.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -23,35 +23,12 @@ Subdivision Halved(const Points& points, const SubdivisionOptions& options) {
   return result;
 }
 
-struct DegenerateCase {
-  const char* name;
-  Rows points;
-};
-
-const DegenerateCase kCases[] = {
-    {"one_point", {{3, 4}}},
-    {"a_segment", {{3, 4}, {5, 6}}},
-    {"all_equal", {{3, 4}, {3, 4}, {3, 4}, {3, 4}}},
-    {"all_zero", {{0, 0}, {0, 0}, {0, 0}}},
-    {"closed", {{0, 0}, {3, 1}, {-2, 4}, {0, 0}}},
-    {"there_and_back", {{0, 0}, {1, 1}, {0, 0}}},
-    {"straight", {{0, 0}, {1, 1}, {3, 3}, {4, 4}}},
-    {"straight_with_overshoot", {{0, 0}, {9, 9}, {-5, -5}, {4, 4}}},
-    {"cusp", {{0, 0}, {1, 1}, {0, 1}, {1, 0}}},
-    {"repeated", {{0, 0}, {0, 0}, {0, 0}, {1, 2}, {3, 1}, {3, 1}, {3, 1}}},
-    {"tiny_beside_huge", {{0, 0}, {1e-300, 1}, {1, 1e-300}, {1, 1}}},
-    {"far_away", {{1e9, 1e9}, {1e9 + 1, 1e9 + 2}, {1e9 + 2, 1e9}}},
-    {"huge", {{0, 0}, {1e300, 1e300}, {1e300, -1e300}, {-1e300, 5e299}}},
-    {"largest", {{-1.7e308, 0}, {1.7e308, 1.7e308}, {1.7e308, -1.7e308}}},
-    {"denormal", {{0, 0}, {5e-324, 1e-323}, {2e-320, 0}}},
-    {"in_space", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}},
-};
-
-class EveryDegenerateCase : public ::testing::TestWithParam<DegenerateCase> {};
-INSTANTIATE_TEST_SUITE_P(BezierSubdivision, EveryDegenerateCase, ::testing::ValuesIn(kCases),
+class EveryDegenerateCurve : public ::testing::TestWithParam<DegenerateCurve> {};
+INSTANTIATE_TEST_SUITE_P(BezierSubdivision, EveryDegenerateCurve,
+                         ::testing::ValuesIn(kDegenerateCurves),
                          [](const auto& given) { return std::string(given.param.name); });
 
-TEST_P(EveryDegenerateCase, EndsWithinItsBoundsByEveryRuleAndMode) {
+TEST_P(EveryDegenerateCurve, HalvingEndsWithinItsBoundsByEveryStopAndMode) {
   const Points points = PointsOf(GetParam().points);
   for (const std::string& name : StopMeasureNames()) {
     for (const double tolerance : {1e-4, 1e-20, 0.0}) {
@@ -75,36 +52,38 @@ TEST_P(EveryDegenerateCase, EndsWithinItsBoundsByEveryRuleAndMode) {
   }
 }
 
-TEST_P(EveryDegenerateCase, TheTrueErrorIsKnown) {
+TEST_P(EveryDegenerateCurve, TheTrueErrorIsKnown) {
   const BezierCurve curve = BezierCurve::Make(PointsOf(GetParam().points), nullptr).value();
   SubdivisionOptions options;
   options.stop = StopMeasure::kSegment;
   options.relative_tolerance = 1e-4;
   const Subdivision result = Halved(curve.control_points(), options);
   EXPECT_EQ(result.end, SubdivisionEnd::kAllPass);
-  const DistanceBounds bounds = BoundHausdorffDistance(
-      curve,
-      Eigen::Map<const Eigen::VectorXd>(result.parameters.data(),
-                                        static_cast<Eigen::Index>(result.parameters.size())),
-      result.vertices);
-  // The tolerance, and what rounding adds in the rule and in the certificate.
-  const int n = curve.degree(), d = curve.dimension();
-  const double unit = UnitOf(curve.control_points());
-  const Points scaled = curve.control_points() / unit;
-  // Vertices that are denormal numbers are rounded to the smallest of these.
-  const double denormal = 2 * std::numeric_limits<double>::denorm_min() / unit;
-  EXPECT_LE(bounds.upper / unit, 1e-4 * BoxSide(n, d, scaled.data()) + denormal +
-                                     4 * BezierRounding(n, d, scaled.data()));
-  EXPECT_LE(bounds.lower, bounds.upper);
+  ExpectErrorWithin(1e-4, curve, result);
 }
 
-TEST(BezierDegenerate, PointsAndSegmentsNeedOnePiece) {
+TEST(BezierDegenerate, PointsAndStraightLinesNeedOnePieceByEveryStop) {
   SubdivisionOptions options;
   options.relative_tolerance = 0.0;
-  for (const Rows& rows : {Rows{{3, 4}}, Rows{{3, 4}, {5, 6}}, Rows{{3, 4}, {3, 4}, {3, 4}},
-                           Rows{{0, 0}, {1, 1}, {3, 3}}}) {
-    EXPECT_EQ(Halved(PointsOf(rows), options).num_pieces(), 1);
+  for (const std::string& stop : StopMeasureNames()) {
+    FromString(stop, &options.stop);
+    // The last line's numbers are rounded, so that its points are not quite on one line.
+    for (const Rows& rows :
+         {Rows{{3, 4}}, Rows{{3, 4}, {5, 6}}, Rows{{3, 4}, {3, 4}, {3, 4}},
+          Rows{{0, 0}, {1, 1}, {3, 3}}, Rows{{0.1, 0.3}, {0.2, 0.6}, {0.4, 1.2}, {0.7, 2.1}}}) {
+      const Subdivision result = Halved(PointsOf(rows), options);
+      EXPECT_EQ(result.num_pieces(), 1) << stop;
+      EXPECT_EQ(result.end, SubdivisionEnd::kAllPass);
+    }
   }
+}
+
+TEST(BezierDegenerate, AnAngleBelowRoundingIsRaisedAndSaid) {
+  SubdivisionOptions options;
+  options.stop = StopMeasure::kAngle;
+  options.relative_tolerance = 0.0;
+  const Subdivision result = Halved(PointsOf({{0, 0}, {1, 1}, {3, 3}}), options);
+  EXPECT_EQ(result.message, "the tolerance is below rounding and was raised to it");
 }
 
 TEST(BezierDegenerate, ATurningThatNeverEndsIsCutShortAndSaidSo) {
@@ -134,6 +113,50 @@ TEST(BezierDegenerate, TheBoundOnPiecesIsKeptAndSaid) {
     EXPECT_LE(result.num_pieces(), 100);
     EXPECT_NE(result.message.find("the bound of 100 pieces was hit"), std::string::npos);
   }
+}
+
+TEST(BezierDegenerate, ABoundOnPiecesIsSpentWhereTheCurveIsFarthest) {
+  // A parabola bends evenly: 64 pieces are best spent on equal ones.
+  SubdivisionOptions options;
+  options.relative_tolerance = 1e-9;
+  options.max_pieces = 64;
+  options.keep_pieces = true;
+  const BezierCurve parabola =
+      BezierCurve::Make(PointsOf({{0, 0}, {1, 2}, {2, 0}}), nullptr).value();
+  Subdivision result = Halved(parabola.control_points(), options);
+  ASSERT_EQ(result.num_pieces(), 64);
+  for (int i = 0; i <= 64; ++i) EXPECT_EQ(result.parameters[i], i / 64.0);
+  EXPECT_EQ(result.num_failing, 64);
+  EXPECT_EQ(result.rounds, 6);
+  EXPECT_EQ(result.message, "64 of 64 pieces do not pass: the bound of 64 pieces was hit");
+  ExpectCovers(result, 2);
+  constexpr double kRoundings = 8;
+  ExpectPiecesAreTheCurve(parabola, result, kRoundings);
+  // Elsewhere: a piece may be halved or not, which for inner points is a factor of 4, and parts of
+  // a piece differ.
+  std::mt19937 random(35);
+  const BezierCurve curve = BezierCurve::Make(RandomPoints(9, 2, &random), nullptr).value();
+  options.max_pieces = 500;
+  result = Halved(curve.control_points(), options);
+  ASSERT_EQ(result.num_pieces(), 500);
+  std::vector<double> errors;
+  for (int i = 0; i < 500; ++i) {
+    errors.push_back(
+        std::sqrt(SquaredPolygonDistance(8, 2, result.pieces.data() + 18 * i).numerator /
+                  SquaredPolygonDistance(8, 2, result.pieces.data() + 18 * i).denominator));
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LE(errors.back(), 8.0 * errors[250]);
+}
+
+TEST(BezierDegenerate, AHitBoundAndARaisedToleranceAreBothSaid) {
+  SubdivisionOptions options;
+  options.relative_tolerance = 0.0;
+  options.max_pieces = 100;
+  EXPECT_EQ(
+      Halved(PointsOf({{0, 0}, {1, 2}, {2, 0}}), options).message,
+      "100 of 100 pieces do not pass: the bound of 100 pieces was hit; the tolerance is below "
+      "rounding and was raised to it");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "splines/bezier_hull.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -55,7 +56,7 @@ TEST(BezierMeasures, DegreesZeroAndOneHaveNoInnerPoint) {
   EXPECT_EQ(Flatness(0, 2, points.data()).numerator, 0.0);
   EXPECT_EQ(HullArea(1, points.data()), 0.0);
   EXPECT_EQ(HullArea(0, points.data()), 0.0);
-  EXPECT_EQ(SquaredLegSlope(0, 2, points.data()), 0.0);
+  EXPECT_EQ(SquaredLegSlope(0, 2, points.data(), 0.0), 0.0);
 }
 
 // from scipy.spatial import ConvexHull
@@ -79,13 +80,17 @@ TEST(BezierMeasures, HullAreaIgnoresRepeatedCollinearAndInnerPoints) {
 TEST(BezierMeasures, LegsAreComparedWithTheChord) {
   // Legs (1, 1), (1, 0), (1, -1) along (3, 0): 45 degrees at most.
   const Points points = PointsOf({{0, 0}, {1, 1}, {2, 1}, {3, 0}});
-  EXPECT_EQ(SquaredLegSlope(3, 2, points.data()), 1.0);
+  EXPECT_EQ(SquaredLegSlope(3, 2, points.data(), 0.0), 1.0);
   const Points repeated = PointsOf({{0, 0}, {0, 0}, {1, 1}, {2, 2}});
-  EXPECT_EQ(SquaredLegSlope(3, 2, repeated.data()), 0.0);
+  EXPECT_EQ(SquaredLegSlope(3, 2, repeated.data(), 0.0), 0.0);
   const Points back = PointsOf({{0, 0}, {2, 0}, {1, 0}});
-  EXPECT_TRUE(std::isinf(SquaredLegSlope(2, 2, back.data())));
+  EXPECT_TRUE(std::isinf(SquaredLegSlope(2, 2, back.data(), 0.0)));
   const Points closed = PointsOf({{0, 0}, {1, 0}, {0, 0}});
-  EXPECT_TRUE(std::isinf(SquaredLegSlope(2, 2, closed.data())));
+  EXPECT_TRUE(std::isinf(SquaredLegSlope(2, 2, closed.data(), 0.0)));
+  // What is no longer than rounding has no direction, and no offset.
+  const Points nearly = PointsOf({{0, 0}, {1, 1e-9}, {1 - 1e-9, 1e-9}, {2, 0}});
+  EXPECT_TRUE(std::isinf(SquaredLegSlope(3, 2, nearly.data(), 0.0)));
+  EXPECT_EQ(SquaredLegSlope(3, 2, nearly.data(), 2e-9), 0.0);
 }
 
 TEST(BezierMeasures, DistanceFromASegmentEndsAtItsEnds) {

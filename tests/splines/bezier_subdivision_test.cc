@@ -2,16 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "splines/bezier_distance.h"
-#include "splines/bezier_measures.h"
+#include "tests/splines/bezier_pieces.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -27,26 +24,6 @@ Subdivision Subdivided(const BezierCurve& curve, const CutChoice& rule,
   return result;
 }
 
-DistanceBounds TrueError(const BezierCurve& curve, const Subdivision& result) {
-  return BoundHausdorffDistance(
-      curve,
-      Eigen::Map<const Eigen::VectorXd>(result.parameters.data(),
-                                        static_cast<Eigen::Index>(result.parameters.size())),
-      result.vertices);
-}
-
-// de Casteljau's algorithm in long double.
-std::array<long double, kMaxDimension> Exactly(const Points& points, long double t) {
-  std::vector<long double> b(points.data(), points.data() + points.size());
-  const auto d = static_cast<std::size_t>(points.cols());
-  for (std::size_t size = b.size() - d; size > 0; size -= d) {
-    for (std::size_t k = 0; k < size; ++k) b[k] = (1.0L - t) * b[k] + t * b[k + d];
-  }
-  std::array<long double, kMaxDimension> point{};
-  std::copy(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(d), point.begin());
-  return point;
-}
-
 using PlainRule = double (*)(CutTrial*);
 
 double CutAtThird(CutTrial* /*trial*/) { return 1.0 / 3.0; }
@@ -57,27 +34,6 @@ double TakeShortFirst(CutTrial* trial) {
   if (u >= 0.5) return 0.5;
   trial->Try(u);
   return u;
-}
-
-// Some 200 pieces are compared with the curve at 5 parameters each. A rounding of the largest
-// coordinate is half an eps; the parameters of pieces are rounded once, which moves the point by
-// |C'| eps / 2.
-void ExpectPiecesAreTheCurve(const BezierCurve& curve, const Subdivision& result,
-                             double roundings) {
-  const int size = curve.degree() + 1, d = curve.dimension();
-  double worst = 0.0;
-  for (int i = 0; i < result.num_pieces(); i += 1 + result.num_pieces() / 200) {
-    const long double begin = result.parameters[i], end = result.parameters[i + 1];
-    for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      double point[kMaxDimension];
-      EvaluateBezier(curve.degree(), d, result.pieces.data() + i * size * d, s, point);
-      const auto exact = Exactly(curve.control_points(), begin + (end - begin) * s);
-      for (int c = 0; c < d; ++c) {
-        worst = std::max(worst, static_cast<double>(std::abs(point[c] - exact[c])));
-      }
-    }
-  }
-  EXPECT_LE(worst, roundings * kEpsilon / 2 * curve.control_points().cwiseAbs().maxCoeff());
 }
 
 TEST(BezierSubdivision, PiecesOfDegree25AreTheCurveToSixteenRoundings) {
@@ -109,16 +65,7 @@ TEST(BezierSubdivision, PiecesCoverTheIntervalWithoutGap) {
   for (PlainRule rule : {&CutAtHalf, &CutAtThird, &TakeShortFirst}) {
     const BezierCurve curve = CurveOf(RandomPoints(8, 2, &random));
     const Subdivision result = Subdivided(curve, rule, options);
-    const int k = result.num_pieces();
-    ASSERT_EQ(result.vertices.rows(), k + 1);
-    ASSERT_EQ(result.pieces.rows(), k * 8);
-    EXPECT_EQ(result.parameters.front(), 0.0);
-    EXPECT_EQ(result.parameters.back(), 1.0);
-    for (int i = 0; i < k; ++i) {
-      EXPECT_LT(result.parameters[i], result.parameters[i + 1]);
-      EXPECT_EQ(result.pieces.row(8 * i), result.vertices.row(i));
-      EXPECT_EQ(result.pieces.row(8 * i + 7), result.vertices.row(i + 1));
-    }
+    ExpectCovers(result, 7);
   }
 }
 
@@ -133,7 +80,8 @@ TEST(BezierSubdivision, AParabolaIsHalvedAsOftenAsItsSecondDifferenceSays) {
   EXPECT_EQ(result.rounds, 5);
   EXPECT_EQ(result.num_pieces(), 32);
   EXPECT_EQ(result.cuts, 31);
-  EXPECT_EQ(result.evaluations, 63);
+  // Five rounds have a piece that fails, the first one, and then all pass.
+  EXPECT_EQ(result.evaluations, 5 + 32);
 }
 
 TEST(BezierSubdivision, AdaptivePiecesAreThoseThatFailedHalved) {
@@ -157,46 +105,13 @@ TEST_P(EveryStop, EveryPieceOfTheResultPasses) {
   ASSERT_TRUE(FromString(GetParam(), &options.stop));
   EXPECT_EQ(ToString(options.stop), GetParam());
   options.relative_tolerance = options.stop == StopMeasure::kAngle ? 0.02 : 1e-4;
-  options.keep_pieces = true;
   std::mt19937 random(28);
   for (PlainRule rule : {&CutAtHalf, &TakeShortFirst}) {
     const BezierCurve curve = CurveOf(RandomPoints(7, 2, &random));
     const Subdivision result = Subdivided(curve, rule, options);
     EXPECT_EQ(result.end, SubdivisionEnd::kAllPass);
     EXPECT_EQ(result.num_failing, 0);
-    const double side = BoxSide(6, 2, curve.control_points().data());
-    for (int i = 0; i < result.num_pieces(); ++i) {
-      const double* piece = result.pieces.data() + i * 7 * 2;
-      const Quotient farthest = SquaredChordDistance(6, 2, piece);
-      const Quotient flatness = Flatness(6, 2, piece);
-      const Quotient polygon = SquaredPolygonDistance(6, 2, piece);
-      const double tolerance = options.relative_tolerance;
-      const double area = tolerance * side * side;
-      // The test of a piece and this one round a few times each.
-      constexpr double kSlack = 1.0 + 1e-12;
-      switch (options.stop) {
-        case StopMeasure::kControlPoints:
-          EXPECT_LE(std::sqrt(farthest.numerator / farthest.denominator),
-                    tolerance * side * kSlack);
-          break;
-        case StopMeasure::kPolygon:
-          EXPECT_LE(std::sqrt(polygon.numerator / polygon.denominator), tolerance * side * kSlack);
-          break;
-        case StopMeasure::kHullArea:
-          EXPECT_LE(HullArea(6, piece), area * kSlack);
-          break;
-        case StopMeasure::kFlatness:
-          EXPECT_LE(flatness.numerator / flatness.denominator, area * kSlack);
-          break;
-        case StopMeasure::kSegment:
-          EXPECT_LE(BoundSegmentDistance(6, 2, piece, piece, piece + 12, 0.02, 0.0).upper,
-                    tolerance * side * kSlack);
-          break;
-        case StopMeasure::kAngle:
-          EXPECT_LE(std::atan(std::sqrt(SquaredLegSlope(6, 2, piece))), tolerance * kSlack);
-          break;
-      }
-    }
+    ExpectPiecesPass(curve, options, result);
   }
 }
 
@@ -208,10 +123,7 @@ TEST(BezierSubdivision, TheTrueErrorStaysBelowTheToleranceOfTheSegmentRules) {
     for (const int degree : {2, 5, 16}) {
       const BezierCurve curve = CurveOf(RandomPoints(degree + 1, 2, &random));
       const Subdivision result = Subdivided(curve, &CutAtHalf, options);
-      const double side = BoxSide(degree, 2, curve.control_points().data());
-      // Certified, including what the certificate adds for rounding.
-      EXPECT_LE(TrueError(curve, result).upper,
-                1e-5 * side + 2 * BezierRounding(degree, 2, curve.control_points().data()));
+      ExpectErrorWithin(1e-5, curve, result);
     }
   }
 }
@@ -219,12 +131,48 @@ TEST(BezierSubdivision, TheTrueErrorStaysBelowTheToleranceOfTheSegmentRules) {
 TEST(BezierSubdivision, OnlyTheSegmentRulesSeeOvershootOnALine) {
   const BezierCurve curve = CurveOf(PointsOf({{0, 0}, {4, 0}, {-3, 0}, {1, 0}}));
   SubdivisionOptions options;
+  options.stop = StopMeasure::kControlPoints;
   EXPECT_EQ(Subdivided(curve, &CutAtHalf, options).num_pieces(), 1);
   for (const StopMeasure stop : {StopMeasure::kSegment, StopMeasure::kPolygon}) {
     options.stop = stop;
     const Subdivision result = Subdivided(curve, &CutAtHalf, options);
     EXPECT_GT(result.num_pieces(), 2);
-    EXPECT_LE(TrueError(curve, result).upper, 1e-5 * 7.0 * (1.0 + 1e-6));
+    ExpectErrorWithin(1e-5, curve, result);
+  }
+}
+
+TEST(BezierSubdivision, TheDefaultStopKeepsItsTolerance) {
+  std::mt19937 random(33);
+  const SubdivisionOptions options;
+  std::vector<Points> cases = {PointsOf({{0, 0}, {4, 0}, {-3, 0}, {1, 0}}),
+                               PointsOf({{0, 0}, {4, 1e-7}, {-3, 0}, {1, 0}})};
+  for (const int degree : {3, 9, 20}) cases.push_back(RandomPoints(degree + 1, 2, &random));
+  for (const Points& points : cases) {
+    const BezierCurve curve = CurveOf(points);
+    ExpectErrorWithin(options.relative_tolerance, curve, Subdivided(curve, &CutAtHalf, options));
+  }
+}
+
+TEST(BezierSubdivision, NoRuleIsTheRuleThatHalves) {
+  std::mt19937 random(34);
+  for (const int degree : {1, 2, 3, 7, 25}) {
+    for (const int dimension : {1, 2, 3, 4}) {
+      for (const SubdivisionMode mode : {SubdivisionMode::kAdaptive, SubdivisionMode::kUniform}) {
+        const BezierCurve curve = CurveOf(RandomPoints(degree + 1, dimension, &random));
+        SubdivisionOptions options;
+        options.mode = mode;
+        options.keep_pieces = true;
+        options.relative_tolerance = 1e-3;
+        const Subdivision by_rule = Subdivided(curve, &CutAtHalf, options);
+        const Subdivision without = Subdivided(curve, CutChoice(), options);
+        EXPECT_EQ(without.parameters, by_rule.parameters);
+        EXPECT_EQ(without.vertices, by_rule.vertices);
+        EXPECT_EQ(without.pieces, by_rule.pieces);
+        EXPECT_EQ(without.cuts, by_rule.cuts);
+        EXPECT_EQ(without.evaluations, by_rule.evaluations);
+        EXPECT_EQ(without.rounds, by_rule.rounds);
+      }
+    }
   }
 }
 
@@ -290,8 +238,7 @@ TEST(BezierSubdivision, RefusesHullAreaInSpace) {
   Subdivision result;
   std::string error;
   EXPECT_FALSE(Subdivide(curve, &CutAtHalf, options, &result, &error));
-  EXPECT_EQ(error,
-            "a stop by hull area needs a planar curve; found 3 coordinates, use control_points");
+  EXPECT_EQ(error, "a stop by hull area needs a planar curve; found 3 coordinates, use polygon");
 }
 
 }  // namespace

@@ -67,7 +67,9 @@ TEST(SubdivideCommand, CutsAFitSpanBySpan) {
   EXPECT_LE(report["true_error"]["relative_at_most"], 1.0001e-4);
   const nlohmann::json knots = ReadJson(fit)["spline"]["knots"];
   const std::vector<std::string> lines = Lines(ReadFile(folder / "p.csv"));
-  // The first and the last row are one point, at the ends of the domain [u_3, u_33].
+  // The first and the last row are one point to the last bit, at the ends of the domain [u_3,
+  // u_33].
+  EXPECT_EQ(lines[1].substr(lines[1].find(',')), lines.back().substr(lines.back().find(',')));
   EXPECT_EQ(std::stod(lines[1]), knots[3].get<double>());
   EXPECT_EQ(std::stod(lines.back()), knots[33].get<double>());
 }
@@ -83,6 +85,55 @@ TEST(SubdivideCommand, CutsThePathsOfAnSvgFile) {
   EXPECT_EQ(lines[0], "path,t,x,y");
   EXPECT_EQ(lines[1], "0,0,0,0");
   EXPECT_EQ(lines.back(), "1,1,5,1");
+}
+
+TEST(SubdivideCommand, SaysWhatItLeavesOutOfAnSvgFile) {
+  const TemporaryFolder folder;
+  const std::string svg =
+      folder.Write("a.svg", "<svg><circle r='2'/><path d='M0 0Q5 9 9 0'/><text>a</text></svg>");
+  const Ended ended = RunBatten({"subdivide", svg, "--report=" + (folder / "r.json")});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const std::string sentence = "left out: circle (1), text (1), since only paths are read";
+  EXPECT_THAT(ended.out, HasSubstr(sentence));
+  EXPECT_EQ(ReadJson(folder / "r.json")["message"], sentence);
+}
+
+TEST(SubdivideCommand, KeepsItsToleranceOrSaysThatItDoesNot) {
+  const TemporaryFolder folder;
+  const std::string overshoot = folder.Write("o.csv", "x,y\n0,0\n4,0\n-3,0\n1,0\n");
+  const Ended by_default =
+      RunBatten({"subdivide", overshoot, "--report=" + (folder / "default.json")});
+  EXPECT_EQ(by_default.status, 0) << by_default.err;
+  EXPECT_LE(ReadJson(folder / "default.json")["true_error"]["relative_at_most"], 1e-5 * 1.001);
+  EXPECT_THAT(by_default.out, testing::Not(HasSubstr("times the tolerance")));
+  const Ended by_lines = RunBatten({"subdivide", overshoot, "--stop=control_points"});
+  EXPECT_EQ(by_lines.status, 0) << by_lines.err;
+  EXPECT_THAT(by_lines.out, HasSubstr("times the tolerance: control_points measures from the lines "
+                                      "of chords"));
+}
+
+TEST(SubdivideCommand, TheBoundOnPiecesIsOfAllCurves) {
+  const TemporaryFolder folder;
+  const std::string svg =
+      folder.Write("a.svg", "<svg><path d='M0 0C1 3 2 -3 3 0C4 3 5 -3 6 0L7 0'/></svg>");
+  const Ended ended = RunBatten({"subdivide", svg, "--max_pieces=21", "--out=" + (folder / "p.csv"),
+                                 "--relative_tolerance=0"});
+  EXPECT_EQ(ended.status, 1);
+  // 7, then half of 14, then as many as a line needs.
+  EXPECT_EQ(Lines(ReadFile(folder / "p.csv")).size(), 1 + 1 + 7 + 7 + 1);
+  ExpectRefused(RunBatten({"subdivide", svg, "--max_pieces=2"}),
+                {"a.svg: max_pieces is 2, must be at least 3, a piece for each curve"});
+}
+
+TEST(SubdivideCommand, TheFigureOfACurveInSpaceNamesItsAxes) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"subdivide", folder.Write("c.csv", "x,y,z\n0,0,0\n1,2,0\n2,0,3\n"),
+                                 "--figure=" + (folder / "cut.svg")});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const std::string script = ReadFile(folder / "cut.gp");
+  EXPECT_THAT(script, HasSubstr("set xlabel 'x'"));
+  EXPECT_THAT(script, HasSubstr("set ylabel 'z'"));
+  EXPECT_THAT(script, HasSubstr("polyline"));
 }
 
 TEST(SubdivideCommand, ReadsStandardInputAndCurvesInSpace) {
@@ -117,8 +168,21 @@ INSTANTIATE_TEST_SUITE_P(
                  "c.csv: found the column weight"},
         BadCurve{"BrokenJson", "c.json", "{\"spline\": ", "c.json: line 1"},
         BadCurve{"NoSpline", "c.json", "{\"a\": 1}", "c.json: /spline"},
-        BadCurve{"RaggedPoints", "c.json", "{\"control_points\": [[0, 0], [1]]}",
-                 "c.json: /control_points: found"},
+        BadCurve{
+            "RaggedPoints", "c.json", "{\"control_points\": [[0, 0], [1]]}",
+            "c.json: /control_points/1: found a list; allowed: a point of 2 coordinates, as the "
+            "first"},
+        BadCurve{"ATextAmongNumbers", "c.json", "{\"control_points\": [[0, 0], [1, \"a\"]]}",
+                 "c.json: /control_points/1/1: found \"a\"; allowed: a number"},
+        BadCurve{
+            "NoPoints", "c.json", "{\"control_points\": []}",
+            "c.json: /control_points: found an empty list; allowed: a list of points of 1 to 4 "
+            "coordinates"},
+        BadCurve{"FiveCoordinates", "c.json", "{\"control_points\": [[0, 0, 0, 0, 0]]}",
+                 "c.json: /control_points/0: found"},
+        BadCurve{"TooWide", "c.json", "{\"control_points\": [[-1.7e308, 0], [1.7e308, 1]]}",
+                 "c.json: the box of all control points is wider than the largest number"},
+        BadCurve{"HalfAFile", "c.svg", "<svg><path d='M0 0L1 1'/>", "c.svg:1:"},
         BadCurve{"TooFewPoints", "c.json",
                  "{\"spline\": {\"degree\": 1, \"periodic\": false, \"knots\": [0, 0, 1, 1], "
                  "\"control_points\": [[0, 0]]}}",
