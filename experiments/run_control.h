@@ -53,6 +53,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
   double Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient);
   void BookStart();
+  void AddToStream(std::uint64_t point);
   double LineSearchFloor(const Eigen::VectorXd& x, double energy, const Eigen::VectorXd& gradient);
   double StepNorm(const Eigen::VectorXd& x) const;
 
@@ -64,6 +65,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   Stopwatch watch_;
   StopReason stop_reason_ = StopReason::kNotRun;
   std::unordered_set<std::uint64_t> points_;
+  std::uint64_t last_point_ = 0;  // of the stream
   Eigen::VectorXd last_x_;
   TraceRow row_;
   int iteration_ = -1;

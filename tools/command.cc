@@ -21,7 +21,7 @@ bool IsAny(const std::string& text, const std::vector<std::string>& words) {
 
 const std::vector<Command>& Commands() {
   static const auto& commands = *new std::vector<Command>{
-      FitCommand(),       CompareCommand(), ReproduceCommand(),
+      FitCommand(),       CompareCommand(), BenchCommand(), ReproduceCommand(),
       SubdivideCommand(), ListCommand(),    HelpCommand(),
   };
   return commands;

@@ -40,6 +40,7 @@ const Command* FindCommand(const std::string& name);
 
 Command FitCommand();        // fit_command.cc
 Command CompareCommand();    // compare_command.cc
+Command BenchCommand();      // bench_command.cc
 Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
 Command ListCommand();       // list_command.cc
