@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 /// In a process of its own nothing can be handed back but what it says.
 std::unique_ptr<Problem> ProblemOf(const BenchSuite& suite, const BenchCell& cell) {
   std::string error;
-  std::unique_ptr<Problem> problem = MakeBenchProblem(
-      suite.problems[cell.problem], suite.terms[cell.terms], cell.seeds, &error);
+  std::unique_ptr<Problem> problem =
+      MakeBenchProblem(suite.problems[cell.problem], suite.terms[cell.terms], cell.seeds, &error);
   if (problem == nullptr) throw std::runtime_error(error);
   return problem;
 }
@@ -244,9 +244,8 @@ ChildLimits LimitsOf(const BenchSuite& suite) {
   constexpr double kRest = 30.0;
   ChildLimits limits;
   limits.memory_mb = suite.limits.memory_mb;
-  limits.wall_seconds = suite.limits.wall_seconds > 0.0
-                            ? suite.limits.wall_seconds
-                            : kTimes * suite.run.max_seconds + kRest;
+  limits.wall_seconds = suite.limits.wall_seconds > 0.0 ? suite.limits.wall_seconds
+                                                        : kTimes * suite.run.max_seconds + kRest;
   limits.cpu_seconds = suite.limits.cpu_seconds > 0.0
                            ? suite.limits.cpu_seconds
                            : 2.0 * limits.wall_seconds * suite.run.threads;

@@ -51,8 +51,8 @@ Json Versions() {
   Json json;
   json["eigen"] = Joined(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
   json["ceres"] = CERES_VERSION_STRING;
-  json["nlohmann_json"] = Joined(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
-                                 NLOHMANN_JSON_VERSION_PATCH);
+  json["nlohmann_json"] =
+      Joined(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
 #if defined(__GLIBC__)
   json["glibc"] = std::to_string(__GLIBC__) + "." + std::to_string(__GLIBC_MINOR__);
 #endif

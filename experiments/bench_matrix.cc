@@ -13,9 +13,8 @@ namespace {
 
 bool MatchesAny(const std::vector<std::string>& patterns, const std::string& text) {
   return patterns.empty() ||
-         std::any_of(patterns.begin(), patterns.end(), [&text](const std::string& pattern) {
-           return MatchesPattern(pattern, text);
-         });
+         std::any_of(patterns.begin(), patterns.end(),
+                     [&text](const std::string& pattern) { return MatchesPattern(pattern, text); });
 }
 
 bool Excludes(const BenchSuite& suite, const BenchExclusion& exclusion, std::size_t problem,
@@ -107,7 +106,8 @@ void AddRule(const BenchSuite& suite, std::ostream* text) {
         << run.max_iterations << ' ' << NumberText(run.max_seconds) << ' '
         << NumberText(run.native_step) << ' ' << NumberText(run.native_gradient) << ' '
         << run.threads << ' ' << run.compile << ' ' << NumberText(limits.cpu_seconds) << ' '
-        << NumberText(limits.wall_seconds) << ' ' << limits.memory_mb << ' ' << suite.warm_up << ' ';
+        << NumberText(limits.wall_seconds) << ' ' << limits.memory_mb << ' ' << suite.warm_up
+        << ' ';
 }
 
 /// Read once a run: many cells share one file, which may be large.
@@ -147,9 +147,8 @@ std::vector<BenchCell> BenchMatrix(const BenchSuite& suite) {
 
 std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, int num_shards) {
   std::vector<BenchCell> part;
-  std::copy_if(
-      cells.begin(), cells.end(), std::back_inserter(part),
-      [&](const BenchCell& cell) { return cell.instance % num_shards == shard - 1; });
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(part),
+               [&](const BenchCell& cell) { return cell.instance % num_shards == shard - 1; });
   return part;
 }
 
@@ -187,16 +186,16 @@ std::string BenchCellKey(const BenchSuite& suite, const BenchCell& cell) {
   ContentHash hash;
   std::ostringstream text;
   AddRule(suite, &text);
-  text << SolverIdentity(suite.solvers[cell.solver]) << ' '
-       << suite.solvers[cell.solver].ToString() << ' ' << cell.seeds.solver << ' '
-       << cell.repetition;
+  text << SolverIdentity(suite.solvers[cell.solver]) << ' ' << suite.solvers[cell.solver].ToString()
+       << ' ' << cell.seeds.solver << ' ' << cell.repetition;
   hash.Add(InstanceKey(suite, cell) + text.str());
   return hash.Digits();
 }
 
 std::string SuiteHash(const BenchSuite& suite) {
   std::ostringstream text;
-  text << suite.name << ' ' << suite.repetitions << ' ' << suite.shuffled << suite.order_seed << ' ';
+  text << suite.name << ' ' << suite.repetitions << ' ' << suite.shuffled << suite.order_seed
+       << ' ';
   for (const double gap : suite.gap_targets) text << NumberText(gap) << ' ';
   AddRule(suite, &text);
   ContentHash hash;

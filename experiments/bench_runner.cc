@@ -22,7 +22,8 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The trace is there with all its rows: it may not have reached the disk when the machine went off.
+/// The trace is there with all its rows: it may not have reached the disk when the machine went
+/// off.
 bool HasTrace(const nlohmann::json& row, const std::string& path) {
   const auto rows = row.value("trace_rows", 0L);
   if (rows == 0) return true;
@@ -40,7 +41,8 @@ std::string LastLine(const std::string& path) {
   for (std::string line; std::getline(file, line);) {
     if (!line.empty()) last = line.substr(0, kLongest);
   }
-  std::replace_if(last.begin(), last.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  std::replace_if(
+      last.begin(), last.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
   return last;
 }
 
@@ -73,8 +75,8 @@ bool BenchRunner::Open(std::string* error) {
     const std::string key = instance["key"];
     instances_[key] = std::move(instance);
   };
-  if (!cell_file_.Open(folder_ / "cells.jsonl",
-                       [this](const std::string& line) { TakeOver(line); }, error) ||
+  if (!cell_file_.Open(
+          folder_ / "cells.jsonl", [this](const std::string& line) { TakeOver(line); }, error) ||
       !instance_file_.Open(folder_ / "instances.jsonl", ReadInstance, error)) {
     return false;
   }
@@ -221,9 +223,9 @@ void BenchRunner::Tell(const Progress& progress, const std::vector<Running>& run
   if (!progress || running.empty()) return;
   const auto done = rows_.size();
   const auto new_ones = static_cast<double>(done - finished_at_start_);
-  const double left = new_ones > 0.0
-                          ? (Now() - started_) / new_ones * static_cast<double>(cells_.size() - done)
-                          : std::nan("");
+  const double left =
+      new_ones > 0.0 ? (Now() - started_) / new_ones * static_cast<double>(cells_.size() - done)
+                     : std::nan("");
   progress(static_cast<int>(done), static_cast<int>(cells_.size()), left,
            CellText(suite_, cells_[running.front().cell]));
 }

@@ -24,8 +24,8 @@ struct BenchFolder {
 class BenchRunner {
  public:
   /// Told now and then, and before each cell; seconds_left is NaN before anything is known.
-  using Progress = std::function<void(int done, int total, double seconds_left,
-                                      const std::string& running)>;
+  using Progress =
+      std::function<void(int done, int total, double seconds_left, const std::string& running)>;
 
   /// `suite` must outlive this. `jobs` cells at once; with more than 1 all are marked overlapped.
   BenchRunner(const BenchSuite& suite, std::vector<BenchCell> cells, BenchFolder folder, int jobs);

@@ -38,8 +38,7 @@ bool AppendOnlyFile::Lock(std::string* error) {
 }
 
 bool AppendOnlyFile::Open(const std::string& path,
-                          const std::function<void(const std::string&)>& read,
-                          std::string* error) {
+                          const std::function<void(const std::string&)>& read, std::string* error) {
   path_ = path;
   file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   struct stat status {};

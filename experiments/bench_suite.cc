@@ -29,8 +29,8 @@ bool ReadProblems(const StrictObject& file, BenchSuite* suite, std::string* erro
     if (!ReadBenchProblems(entries[i], suite->path, place, &read, error)) return false;
     for (BenchProblem& problem : read) {
       if (!labels.insert(problem.label).second) {
-        return entries[i].Complain("", "found " + problem.label +
-                                           " twice; allowed: each problem once, by its name");
+        return entries[i].Complain(
+            "", "found " + problem.label + " twice; allowed: each problem once, by its name");
       }
       suite->problems.push_back(std::move(problem));
     }
@@ -90,8 +90,8 @@ bool ReadExclusions(const StrictObject& file, BenchSuite* suite) {
 bool ReadTargets(const StrictObject& file, BenchSuite* suite) {
   StrictObject targets;
   if (!file.Has("targets")) return true;
-  if (!file.Object("targets", kRequired, &targets) ||
-      !targets.HasOnly({"gaps"}) || !targets.Numbers("gaps", kRequired, &suite->gap_targets)) {
+  if (!file.Object("targets", kRequired, &targets) || !targets.HasOnly({"gaps"}) ||
+      !targets.Numbers("gaps", kRequired, &suite->gap_targets)) {
     return false;
   }
   for (std::size_t i = 0; i < suite->gap_targets.size(); ++i) {
@@ -200,10 +200,10 @@ bool ReadBenchSuite(const std::string& path, BenchSuite* suite, std::string* err
       !file.Word("format", kRequired, {"batten.suite/1"}, &format) ||
       !file.Text("name", kRequired, &read.name) ||
       !file.Text("summary", kOptional, &read.summary) || !ReadProblems(file, &read, error) ||
-      !ReadTerms(file, &read) || !ReadBenchSolvers(file, &read.solvers) || !ReadExclusions(file, &read) ||
-      !ReadTargets(file, &read) || !ReadBudgets(file, &read) || !ReadRule(file, &read) ||
-      !ReadSeeds(file, &read) || !ReadOrder(file, &read) || !TryProblems(file, read) ||
-      !CheckExclusions(file, read)) {
+      !ReadTerms(file, &read) || !ReadBenchSolvers(file, &read.solvers) ||
+      !ReadExclusions(file, &read) || !ReadTargets(file, &read) || !ReadBudgets(file, &read) ||
+      !ReadRule(file, &read) || !ReadSeeds(file, &read) || !ReadOrder(file, &read) ||
+      !TryProblems(file, read) || !CheckExclusions(file, read)) {
     return false;
   }
   *suite = std::move(read);

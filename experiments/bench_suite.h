@@ -43,7 +43,7 @@ struct BenchExclusion {
 
 /// What one cell's process may use.
 struct BenchLimits {
-  double cpu_seconds = 0.0;  // 0: twice the wall time, per thread
+  double cpu_seconds = 0.0;   // 0: twice the wall time, per thread
   double wall_seconds = 0.0;  // 0: three times the seconds of the rule, and 30 for the rest
   int memory_mb = 4096;
 };

@@ -128,9 +128,9 @@ bool ReadBase(const StrictObject& object, const std::string& suite_path, BenchPr
 
 /// One problem per point of the grid; what stands in a list of several is part of its label.
 void Spread(const BenchProblem& base, const Grid& grid, std::vector<BenchProblem>* problems) {
-  const std::vector<int> counts =
-      grid.control_points.empty() ? std::vector<int>{base.entry.spec.control_points}
-                                  : grid.control_points;
+  const std::vector<int> counts = grid.control_points.empty()
+                                      ? std::vector<int>{base.entry.spec.control_points}
+                                      : grid.control_points;
   const std::vector<int> degrees =
       grid.degrees.empty() ? std::vector<int>{base.entry.spec.degree} : grid.degrees;
   const std::vector<std::string> kinds =

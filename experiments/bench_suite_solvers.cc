@@ -18,8 +18,7 @@ bool ReadOptionValues(const StrictObject& options, const std::string& key,
   if (!options.IsList(key)) {
     double number = 0.0;
     std::string word;
-    if (options.IsNumber(key) &&
-        options.Number(key, kRequired, -HUGE_VAL, HUGE_VAL, &number)) {
+    if (options.IsNumber(key) && options.Number(key, kRequired, -HUGE_VAL, HUGE_VAL, &number)) {
       *values = {NumberText(number)};
       return true;
     }
@@ -88,10 +87,8 @@ bool ReadSolverGrid(const StrictObject& entry, std::vector<NameSpec>* solvers) {
   std::string text, why;
   StrictObject options;
   std::vector<std::string> wrapped;
-  if (!entry.HasOnly({"solver", "options", "wraps"}) ||
-      !entry.Text("solver", kRequired, &text) ||
-      !entry.Object("options", kOptional, &options) ||
-      !entry.Texts("wraps", kOptional, &wrapped)) {
+  if (!entry.HasOnly({"solver", "options", "wraps"}) || !entry.Text("solver", kRequired, &text) ||
+      !entry.Object("options", kOptional, &options) || !entry.Texts("wraps", kOptional, &wrapped)) {
     return false;
   }
   if (!ParseNameSpec(text, &base, &why)) return entry.Complain("solver", why);
@@ -143,8 +140,8 @@ bool ReadBenchSolvers(const StrictObject& file, std::vector<NameSpec>* solvers) 
       }
       // By what they mean: lbfgs is lbfgs/memory=10.
       if (!identities.insert(SolverIdentity(spec)).second) {
-        return entry.Complain("", "found " + spec.ToString() +
-                                      " twice, by its options; allowed: each solver once");
+        return entry.Complain(
+            "", "found " + spec.ToString() + " twice, by its options; allowed: each solver once");
       }
       solvers->push_back(std::move(spec));
     }

@@ -5,6 +5,7 @@
 
 #include "cost_functions/options.h"
 #include "experiments/short_number.h"
+#include "experiments/table_text.h"
 
 namespace batten {
 namespace {
@@ -148,54 +149,6 @@ std::string Wrapped(const std::string& text) {
     begin = end + 1;
   }
   return result + line + "\n";
-}
-
-std::string Replaced(const std::string& text,
-                     const std::vector<std::pair<char, std::string>>& replacements) {
-  std::string result;
-  for (const char c : text) {
-    const auto found = std::find_if(replacements.begin(), replacements.end(),
-                                    [c](const auto& pair) { return pair.first == c; });
-    result += found == replacements.end() ? std::string(1, c) : found->second;
-  }
-  return result;
-}
-
-std::string MarkdownText(const std::string& text) {
-  return Replaced(text, {{'|', "\\|"},
-                         {'\\', "\\\\"},
-                         {'<', "&lt;"},
-                         {'*', "\\*"},
-                         {'`', "\\`"},
-                         {'\n', " "},
-                         {'\r', " "}});
-}
-
-std::string LatexText(const std::string& text) {
-  return Replaced(text, {{'\\', "\\textbackslash{}"},
-                         {'_', "\\_"},
-                         {'&', "\\&"},
-                         {'%', "\\%"},
-                         {'#', "\\#"},
-                         {'$', "\\$"},
-                         {'{', "\\{"},
-                         {'}', "\\}"},
-                         {'^', "\\textasciicircum{}"},
-                         {'~', "\\textasciitilde{}"},
-                         {'|', "\\textbar{}"},
-                         {'<', "\\textless{}"},
-                         {'>', "\\textgreater{}"},
-                         {'\n', " "},
-                         {'\r', " "}});
-}
-
-/// 1.2e-10 as a power of ten.
-std::string LatexNumber(const std::string& text) {
-  const std::size_t exponent = text.find('e');
-  double value = 0.0;
-  if (exponent == std::string::npos || !ParseNumber(text, &value)) return LatexText(text);
-  return "$" + text.substr(0, exponent) + "\\cdot10^{" +
-         std::to_string(std::stoi(text.substr(exponent + 1))) + "}$";
 }
 
 std::string LatexLine(const Cells& cells) {

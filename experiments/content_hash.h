@@ -6,8 +6,8 @@
 
 namespace batten {
 
-/// FNV-1a over what is added, one after the other: whether two results were made of the same things.
-/// No protection against somebody who wants two things to look alike.
+/// FNV-1a over what is added, one after the other: whether two results were made of the same
+/// things. No protection against somebody who wants two things to look alike.
 class ContentHash {
  public:
   void AddBytes(const char* bytes, std::size_t count);

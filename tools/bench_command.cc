@@ -8,6 +8,7 @@
 #include "experiments/bench_manifest.h"
 #include "experiments/bench_runner.h"
 #include "problems/input_file.h"
+#include "tools/bench_output.h"
 #include "tools/command.h"
 #include "tools/interrupts.h"
 #include "tools/output_files.h"
@@ -68,9 +69,9 @@ std::string TimeText(double seconds) {
 BenchRunner::Progress Shown(Progress* progress) {
   return [progress](int done, int total, double left, const std::string& running) {
     if (!progress->IsDue()) return;
-    progress->Show(static_cast<double>(done) / total, std::to_string(done) + " / " +
-                                                          std::to_string(total) + TimeText(left) +
-                                                          ", " + running);
+    progress->Show(
+        static_cast<double>(done) / total,
+        std::to_string(done) + " / " + std::to_string(total) + TimeText(left) + ", " + running);
   };
 }
 
@@ -97,12 +98,14 @@ int RunSuite(const BenchSuite& suite, const std::vector<BenchCell>& cells, int j
     Progress progress(FLAGS_quiet);
     if (!runner.Run(Shown(&progress), error)) return kBadInput;
   }
-  if (InterruptRequested()) {
+  const bool is_interrupted = InterruptRequested();
+  const int status = WriteBenchResults(FLAGS_out, FLAGS_figures, FLAGS_strict, output);
+  if (is_interrupted) {
     *error = "interrupted after " + std::to_string(runner.num_finished()) + " of " +
              std::to_string(runner.num_cells()) + " cells; the same command goes on";
     return kInterruptedStatus;
   }
-  return kDone;
+  return status;
 }
 
 int RunBench(const std::vector<std::string>& positional, CommandOutput* output) {
@@ -142,10 +145,12 @@ Command BenchCommand() {
       "A suite (docs/formats.md) names problems, terms, solvers with grids of options, seeds, "
       "targets and budgets. Each cell of the matrix runs in a process of its own, whose time and "
       "memory are limited: one that crashes or hangs is a row that says so.",
-      "What is finished stays: the same command goes on where it was interrupted, killed or ran out "
+      "What is finished stays: the same command goes on where it was interrupted, killed or ran "
+      "out "
       "of disk, and runs again only cells of which the program, the problem, the data or an option "
       "has changed."};
-  command.examples = {"batten bench suite.json --dry_run", "batten bench suite.json --out=out/bench",
+  command.examples = {"batten bench suite.json --dry_run",
+                      "batten bench suite.json --out=out/bench",
                       "batten bench suite.json --out=out/part_2 --shard=2/8"};
   command.flags = {TextFlag("out", "FOLDER", "a folder", "Folder for results, created if missing."),
                    SwitchFlag("dry_run"), NumberFlag("jobs", "N", 1.0, 1024.0),
