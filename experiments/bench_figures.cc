@@ -169,16 +169,15 @@ std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const st
       DrawOrRemove(folder + "/performance_profiles", PerformancePanels(results), costs, batch),
       DrawOrRemove(folder + "/data_profiles", DataPanels(results), costs, batch),
       DrawOrRemove(folder + "/runtime_distributions", DistributionPanels(results), 1, batch)};
-  const bool has_pairs =
-      results.solvers.size() <= kMostPairSolvers && !results.targets.empty();
+  const bool has_pairs = results.solvers.size() <= kMostPairSolvers && !results.targets.empty();
   // Of the strictest gap.
   std::size_t target = 0;
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
     if (results.targets[t].gap > 0.0) target = t;
   }
-  figures.push_back(DrawOrRemove(
-      folder + "/pair_profiles",
-      has_pairs ? PairPanels(results, target) : std::vector<PlotPanel>(), 2, batch));
+  figures.push_back(DrawOrRemove(folder + "/pair_profiles",
+                                 has_pairs ? PairPanels(results, target) : std::vector<PlotPanel>(),
+                                 2, batch));
   return figures;
 }
 

@@ -51,10 +51,9 @@ bool MergeManifests(const std::string& out, const std::vector<BenchData>& parts,
     for (const nlohmann::json& session : *found) sessions.push_back(session);
   }
   manifest["sessions"] = std::move(sessions);
-  return WriteFileAtomically(out + "/manifest.json",
-                             manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                                 "\n",
-                             error);
+  return WriteFileAtomically(
+      out + "/manifest.json",
+      manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", error);
 }
 
 /// Appends what is not there yet.

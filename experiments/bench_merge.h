@@ -8,7 +8,7 @@ namespace batten {
 
 /// What merging has to say beside its files.
 struct MergeReport {
-  int cells = 0;      // in the merged folder
+  int cells = 0;       // in the merged folder
   int duplicates = 0;  // rows that were in it, or came, more than once
   int missing = 0;     // cells of the suite that no folder has
 };

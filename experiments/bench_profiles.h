@@ -29,8 +29,8 @@ std::vector<Steps> PerformanceProfiles(const CostTable& costs);
 std::vector<Steps> PairProfiles(const CostTable& costs, std::size_t first, std::size_t second);
 
 /// For each solver the share of problems it solves at a cost of x units of the problem's own:
-/// More & Wild, SIAM Journal on Optimization 20 (2009) 172-191, where costs are evaluations of E and
-/// the unit is n + 1 of them.
+/// More & Wild, SIAM Journal on Optimization 20 (2009) 172-191, where costs are evaluations of E
+/// and the unit is n + 1 of them.
 std::vector<Steps> DataProfiles(const CostTable& costs, const std::vector<double>& units);
 
 /// Share of all entries that are at most x: with one entry per problem and target the runtime

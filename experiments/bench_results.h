@@ -28,11 +28,11 @@ struct BenchInstance {
   std::string problem;
   std::string terms;
   double num_variables = 0.0;
-  double unit_seconds = 0.0;    // NaN: not known
+  double unit_seconds = 0.0;  // NaN: not known
   double start_energy = 0.0;
-  double minimum_energy = 0.0;  // E*: the direct answer, or the best basin's
-  bool has_basins = false;      // no direct answer
-  double truth_energy = 0.0;    // NaN: not known
+  double minimum_energy = 0.0;         // E*: the direct answer, or the best basin's
+  bool has_basins = false;             // no direct answer
+  double truth_energy = 0.0;           // NaN: not known
   std::vector<double> basin_energies;  // in the order of energies at foot points
 };
 

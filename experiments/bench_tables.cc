@@ -56,10 +56,9 @@ double ChargedMean(const CostTable& costs, std::size_t solver, double shift) {
 }
 
 int CountSolved(const CostTable& costs, std::size_t solver) {
-  return static_cast<int>(
-      std::count_if(costs.begin(), costs.end(), [solver](const std::vector<double>& row) {
-        return std::isfinite(row[solver]);
-      }));
+  return static_cast<int>(std::count_if(
+      costs.begin(), costs.end(),
+      [solver](const std::vector<double>& row) { return std::isfinite(row[solver]); }));
 }
 
 int CountBestBasin(const BenchResults& results, std::size_t solver, int* of) {
@@ -83,29 +82,41 @@ bool Write(const CsvTable& table, const std::string& stem, const std::string& ca
 }  // namespace
 
 CsvTable RunTable(const BenchResults& results) {
-  CsvTable table({"problem", "terms", "data_seed", "start_seed", "solver", "seed", "stop",
-                  "verified", "iterations", "evaluations", "energy", "gap", "gradient_norm",
-                  "basin", "rms_orthogonal", "flags", "message", "repetitions", "seconds",
-                  "seconds_low", "seconds_high", "work_units"});
+  CsvTable table({"problem",      "terms",     "data_seed",     "start_seed", "solver",
+                  "seed",         "stop",      "verified",      "iterations", "evaluations",
+                  "energy",       "gap",       "gradient_norm", "basin",      "rms_orthogonal",
+                  "flags",        "message",   "repetitions",   "seconds",    "seconds_low",
+                  "seconds_high", "work_units"});
   for (const BenchRun& run : results.runs) {
     const nlohmann::json& row = *run.first;
     const BenchInstance& instance = results.instances[run.instance];
     const MedianWithInterval seconds = BootstrapMedian(run.seconds, kBootstrapSeed);
     const double energy = NumberAt(row, "energy");
     const double fall = instance.start_energy - instance.minimum_energy;
-    const double gap = instance.has_basins ? (energy - instance.minimum_energy) / fall
-                                           : NumberAt(row, "gap");
+    const double gap =
+        instance.has_basins ? (energy - instance.minimum_energy) / fall : NumberAt(row, "gap");
     const bool knows_basin = instance.has_basins && run.basin >= 0;
-    table.AddRow({WithoutCommas(instance.problem), WithoutCommas(instance.terms),
-                  Cell(NumberAt(row, "data_seed")), Cell(NumberAt(row, "start_seed")),
-                  WithoutCommas(results.solvers[run.solver]), std::to_string(run.solver_seed),
-                  WithoutCommas(TextAt(row, "stop")), Verified(row),
-                  Cell(NumberAt(row, "iterations")), Cell(SumOfCalls(row)), Cell(energy),
-                  Cell(gap), Cell(NumberAt(row, "gradient_norm")),
+    table.AddRow({WithoutCommas(instance.problem),
+                  WithoutCommas(instance.terms),
+                  Cell(NumberAt(row, "data_seed")),
+                  Cell(NumberAt(row, "start_seed")),
+                  WithoutCommas(results.solvers[run.solver]),
+                  std::to_string(run.solver_seed),
+                  WithoutCommas(TextAt(row, "stop")),
+                  Verified(row),
+                  Cell(NumberAt(row, "iterations")),
+                  Cell(SumOfCalls(row)),
+                  Cell(energy),
+                  Cell(gap),
+                  Cell(NumberAt(row, "gradient_norm")),
                   knows_basin ? std::to_string(run.basin + 1) : "",
-                  Cell(NumberAt(row, "rms_orthogonal")), FlagsText(row),
-                  WithoutCommas(TextAt(row, "message")), std::to_string(run.rows.size()),
-                  Cell(seconds.median), Cell(seconds.low), Cell(seconds.high),
+                  Cell(NumberAt(row, "rms_orthogonal")),
+                  FlagsText(row),
+                  WithoutCommas(TextAt(row, "message")),
+                  std::to_string(run.rows.size()),
+                  Cell(seconds.median),
+                  Cell(seconds.low),
+                  Cell(seconds.high),
                   Cell(seconds.median / instance.unit_seconds)});
   }
   return table;
@@ -119,10 +130,12 @@ CsvTable SolverTable(const BenchResults& results) {
     for (std::size_t s = 0; s < results.solvers.size(); ++s) {
       int of_basins = 0;
       const int best = CountBestBasin(results, s, &of_basins);
-      std::vector<std::string> cells = {
-          results.targets[t].label,           WithoutCommas(results.solvers[s]),
-          std::to_string(counts.size()),      std::to_string(CountSolved(counts, s)),
-          of_basins > 0 ? std::to_string(best) : "", of_basins > 0 ? std::to_string(of_basins) : ""};
+      std::vector<std::string> cells = {results.targets[t].label,
+                                        WithoutCommas(results.solvers[s]),
+                                        std::to_string(counts.size()),
+                                        std::to_string(CountSolved(counts, s)),
+                                        of_basins > 0 ? std::to_string(best) : "",
+                                        of_basins > 0 ? std::to_string(of_basins) : ""};
       for (const BenchCost cost : kBenchCosts) {
         cells.push_back(Cell(ChargedMean(CostsOf(results, t, cost, nullptr), s, Shift(cost))));
       }
@@ -173,8 +186,8 @@ bool WriteBenchTables(const BenchResults& results, const std::string& folder, Fi
   std::string notes = "# " + MarkdownText(results.suite) + "\n\n" +
                       std::to_string(results.num_finished) + " of " +
                       std::to_string(results.num_cells) +
-                      " cells are finished. A run that does not reach a target is charged 10 times "
-                      "the largest cost of its instance in the means of solvers.md; instances on "
+                      " cells are finished. A solver that does not reach a target, or does not "
+                      "apply, is charged 10 times the largest cost of its instance in the means of solvers.md; instances on "
                       "which nobody reaches it are left out of them.\n\n";
   for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
   return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&

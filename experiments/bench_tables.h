@@ -11,7 +11,8 @@
 
 namespace batten {
 
-// Columns that begin with `seconds` or `work_units` are times; all others are the same in every run.
+// Columns that begin with `seconds` or `work_units` are times; all others are the same in every
+// run.
 
 /// A row per instance, solver and seed: what came of it.
 CsvTable RunTable(const BenchResults& results);

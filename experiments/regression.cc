@@ -123,18 +123,17 @@ class Finder {
     for (std::size_t k = 0; k < tests.size(); ++k) {
       const Test& test = tests[k];
       const char* const cost = test.of_time ? "seconds" : "evaluations";
-      const bool worse =
-          corrected[k] < rule_.significance && test.ratio > 1.0 + rule_.slowdown;
+      const bool worse = corrected[k] < rule_.significance && test.ratio > 1.0 + rule_.slowdown;
       report_->tests.AddRow({Cleaned(test.solver), cost, std::to_string(test.rank.count),
                              NumberText(test.ratio), NumberText(test.rank.positive_sum),
                              NumberText(test.rank.p_greater), NumberText(corrected[k]),
                              worse ? "yes" : "no"});
       if (!worse) continue;
-      report_->regressions.push_back(
-          (test.solver == "all" ? "all solvers" : test.solver) + " need " +
-          ShortNumber(test.ratio, 3) + " times the " + cost + " (median of " +
-          std::to_string(test.rank.count) + " cells that differ; p = " +
-          ShortNumber(corrected[k], 2) + ")");
+      report_->regressions.push_back((test.solver == "all" ? "all solvers" : test.solver) +
+                                     " need " + ShortNumber(test.ratio, 3) + " times the " + cost +
+                                     " (median of " + std::to_string(test.rank.count) +
+                                     " cells that differ; p = " + ShortNumber(corrected[k], 2) +
+                                     ")");
     }
   }
 
@@ -150,8 +149,7 @@ class Finder {
     const double start = NumberAt(*pair.before->first, "start_energy");
     // Ends at E = 0 are rounding of the start's.
     constexpr double kZero = 1e-12;
-    const double allowed =
-        rule_.energy_rounding * std::abs(before) + kZero * std::abs(start);
+    const double allowed = rule_.energy_rounding * std::abs(before) + kZero * std::abs(start);
     if (!std::isfinite(before) || !std::isfinite(now) || std::abs(now - before) <= allowed) return;
     const std::string sentence = NameOf(key) + ": ends at E = " + ShortNumber(now, 7) +
                                  ", before at " + ShortNumber(before, 7);
@@ -185,8 +183,7 @@ void CompareBuilds(const BenchData& before, const BenchData& now, RegressionRepo
   }
   const auto Processor = [](const BenchData& data) {
     const auto found = data.manifest.find("sessions");
-    const bool has_any =
-        found != data.manifest.end() && found->is_array() && !found->empty();
+    const bool has_any = found != data.manifest.end() && found->is_array() && !found->empty();
     return has_any ? TextAt(found->back(), "processor") : std::string("unknown");
   };
   if (Processor(before) == Processor(now)) return;

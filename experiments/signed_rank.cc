@@ -60,8 +60,7 @@ SignedRank TestSignedRank(const std::vector<double>& differences) {
   SignedRank result;
   result.count = static_cast<int>(kept.size());
   if (kept.empty()) return result;
-  std::sort(kept.begin(), kept.end(),
-            [](double a, double b) { return std::abs(a) < std::abs(b); });
+  std::sort(kept.begin(), kept.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   std::vector<double> sizes;
   for (const double difference : kept) sizes.push_back(std::abs(difference));
   const std::vector<long> ranks = DoubledRanks(sizes);
@@ -69,8 +68,8 @@ SignedRank TestSignedRank(const std::vector<double>& differences) {
   for (std::size_t k = 0; k < kept.size(); ++k) positive += kept[k] > 0.0 ? ranks[k] : 0;
   result.positive_sum = 0.5 * static_cast<double>(positive);
   constexpr std::size_t kMostExact = 500;
-  result.p_greater = kept.size() <= kMostExact ? ExactTail(ranks, positive)
-                                               : NormalTail(ranks, positive);
+  result.p_greater =
+      kept.size() <= kMostExact ? ExactTail(ranks, positive) : NormalTail(ranks, positive);
   return result;
 }
 

@@ -9,8 +9,8 @@ namespace batten {
 /// Statistical Methods, 3rd ed. 2014, sec. 3.1. Differences of 0 are left out, equal sizes share
 /// their mean rank.
 struct SignedRank {
-  int count = 0;               // of differences that are not 0
-  double positive_sum = 0.0;   // T+, of the ranks of positive ones
+  int count = 0;              // of differences that are not 0
+  double positive_sum = 0.0;  // T+, of the ranks of positive ones
   /// Probability of a T+ at least as large if each sign were as likely as the other. Exact, given
   /// the ranks, for up to 500 differences; beyond, by the normal distribution with the variance
   /// that ties leave. 1 for no differences.

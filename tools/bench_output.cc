@@ -48,7 +48,8 @@ std::string NotesText(const BenchResults& results) {
 
 int Judge(const BenchResults& results, bool strict, CommandOutput* output) {
   if (results.some_claim_failed) {
-    output->error = "a claim failed its audit, or a solver disagrees with the direct answer: notes.md";
+    output->error =
+        "a claim failed its audit, or a solver disagrees with the direct answer: notes.md";
     return kDisagreement;
   }
   if (strict && results.some_failed) {
@@ -60,8 +61,7 @@ int Judge(const BenchResults& results, bool strict, CommandOutput* output) {
 
 }  // namespace
 
-int WriteBenchResults(const std::string& folder, bool figures, bool strict,
-                      CommandOutput* output) {
+int WriteBenchResults(const std::string& folder, bool figures, bool strict, CommandOutput* output) {
   BenchData data;
   if (!ReadBenchData(folder, &data, &output->error)) return kBadInput;
   const BenchResults results = CollectResults(data);

@@ -7,9 +7,9 @@
 
 namespace batten {
 
-/// Tables, notes and, if wanted, figures of a folder of `bench` or `merge`, from its rows and traces
-/// alone; says in output->results what there is. An exit status: 3 where a claim failed or solvers
-/// disagree, 1 if `strict` and some run did not reach what was asked.
+/// Tables, notes and, if wanted, figures of a folder of `bench` or `merge`, from its rows and
+/// traces alone; says in output->results what there is. An exit status: 3 where a claim failed or
+/// solvers disagree, 1 if `strict` and some run did not reach what was asked.
 int WriteBenchResults(const std::string& folder, bool figures, bool strict, CommandOutput* output);
 
 }  // namespace batten

@@ -17,8 +17,8 @@ std::string ReportText(const RegressionReport& report) {
   for (std::size_t row = 0; row < report.tests.num_rows(); ++row) {
     text += report.tests.Text(row, "solver") + ": " + report.tests.Text(row, "cost") + " times " +
             ShortNumber(report.tests.Number(row, "median_ratio"), 3) + ", " +
-            report.tests.Text(row, "cells") + " cells differ, p = " +
-            ShortNumber(report.tests.Number(row, "p_corrected"), 2) + "\n";
+            report.tests.Text(row, "cells") +
+            " cells differ, p = " + ShortNumber(report.tests.Number(row, "p_corrected"), 2) + "\n";
   }
   for (const std::string& sentence : report.differences) {
     text += "differs: " + OneLine(sentence) + "\n";
@@ -46,9 +46,10 @@ int RunRegress(const std::vector<std::string>& positional, CommandOutput* output
   const RegressionReport report =
       FindRegressions(before, CollectResults(before), now, CollectResults(now), rule);
   if (report.matched == 0) {
-    return Refuse("regress: found no run that both folders have; allowed: results of suites that "
-                  "share problems, terms and solvers",
-                  output);
+    return Refuse(
+        "regress: found no run that both folders have; allowed: results of suites that "
+        "share problems, terms and solvers",
+        output);
   }
   output->results = ReportText(report);
   if (report.regressions.empty()) return kDone;

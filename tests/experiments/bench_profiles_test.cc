@@ -28,8 +28,8 @@ TEST(PerformanceProfiles, AreSharesOfAllProblemsWithinAFactorOfTheBest) {
 }
 
 TEST(PerformanceProfiles, OfThreeAreNoOrderOfTwo) {
-  // With the third solver the first is within a factor 2 of the best on problems 1 and 4, the second
-  // on problem 3; without it the first on 1, 2 and 4, the second on all.
+  // With the third solver the first is within a factor 2 of the best on problems 1 and 4, the
+  // second on problem 3; without it the first on 1, 2 and 4, the second on all.
   const CostTable table = {{2.0, 4.0, 1.0}, {5.0, 4.0, 1.0}, {3.0, 1.0, 10.0}, {2.0, 3.0, 1.0}};
   const std::vector<Steps> all = PerformanceProfiles(table);
   EXPECT_EQ(all[0].At(2.0), 0.5);
@@ -61,8 +61,8 @@ TEST(ShiftedGeometricMean, TakesZeros) {
 
 TEST(ChargeFailures, TakesTheLargestCostOfTheProblem) {
   const CostTable charged = ChargeFailures(kTable, 10.0);
-  EXPECT_THAT(charged, ElementsAre(ElementsAre(1.0, 2.0), ElementsAre(4.0, 2.0),
-                                   ElementsAre(3.0, 30.0)));
+  EXPECT_THAT(charged,
+              ElementsAre(ElementsAre(1.0, 2.0), ElementsAre(4.0, 2.0), ElementsAre(3.0, 30.0)));
 }
 
 TEST(BootstrapMedian, HoldsTheMedianAndIsTheSameAgain) {

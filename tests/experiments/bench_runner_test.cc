@@ -23,13 +23,14 @@ class BenchRunnerTest : public ::testing::Test {
   /// Runs a suite of these solvers on one small problem; rows in the order of the solvers.
   std::vector<nlohmann::json> Run(const std::string& solvers, const std::string& more = "") {
     const std::string path = folder_.Write(
-        "suite.json", R"({"format": "batten.suite/1", "name": "faults", "problems": [)"
-                      R"({"synthetic": "star", "name": "star", "points": 60, "control_points": 10)"
-                      R"(, "start": "centroid"}],)"
-                      R"("solvers": [)" + solvers + R"(], "order": {"shuffled": false})" + more +
-                      (more.find("warm_up") == std::string::npos
-                           ? R"(, "repetitions": 1, "warm_up": 0})"
-                           : "}"));
+        "suite.json",
+        R"({"format": "batten.suite/1", "name": "faults", "problems": [)"
+        R"({"synthetic": "star", "name": "star", "points": 60, "control_points": 10)"
+        R"(, "start": "centroid"}],)"
+        R"("solvers": [)" +
+            solvers + R"(], "order": {"shuffled": false})" + more +
+            (more.find("warm_up") == std::string::npos ? R"(, "repetitions": 1, "warm_up": 0})"
+                                                       : "}"));
     std::string error;
     EXPECT_TRUE(ReadBenchSuite(path, &suite_, &error)) << error;
     BenchRunner runner(suite_, BenchMatrix(suite_), {out_}, 1);

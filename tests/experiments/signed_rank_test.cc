@@ -19,7 +19,8 @@ TEST(SignedRank, IsExactWhereItCanBeCounted) {
   EXPECT_DOUBLE_EQ(TestSignedRank({-1.0, -2.0}).p_greater, 1.0);
 }
 
-// Hollander, Wolfe & Chicken, table of the signed-rank statistic, n = 10: 0.042 for 45, 0.024 for 47.
+// Hollander, Wolfe & Chicken, table of the signed-rank statistic, n = 10: 0.042 for 45, 0.024
+// for 47.
 TEST(SignedRank, AgreesWithTheTable) {
   // T+ = 55 - (1 + 9) and 55 - 8.
   const SignedRank first = TestSignedRank({-1, 2, 3, 4, 5, 6, 7, 8, -9, 10});
@@ -55,8 +56,9 @@ TEST(SignedRank, OfManyIsNearTheExactOne) {
 
 TEST(HolmCorrected, MultipliesByTheTestsThatAreLeft) {
   // In order: 0.01 * 3, 0.02 * 2, 0.03 * 1, none below the one before.
-  EXPECT_THAT(HolmCorrected({0.03, 0.01, 0.02}),
-              ElementsAre(DoubleNear(0.04, 1e-12), DoubleNear(0.03, 1e-12), DoubleNear(0.04, 1e-12)));
+  EXPECT_THAT(
+      HolmCorrected({0.03, 0.01, 0.02}),
+      ElementsAre(DoubleNear(0.04, 1e-12), DoubleNear(0.03, 1e-12), DoubleNear(0.04, 1e-12)));
 }
 
 }  // namespace
