@@ -187,7 +187,8 @@ bool WriteBenchTables(const BenchResults& results, const std::string& folder, Fi
                       std::to_string(results.num_finished) + " of " +
                       std::to_string(results.num_cells) +
                       " cells are finished. A solver that does not reach a target, or does not "
-                      "apply, is charged 10 times the largest cost of its instance in the means of solvers.md; instances on "
+                      "apply, is charged 10 times the largest cost of its instance in the means of "
+                      "solvers.md; instances on "
                       "which nobody reaches it are left out of them.\n\n";
   for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
   return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&

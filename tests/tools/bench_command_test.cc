@@ -19,7 +19,11 @@ json GoodSuite() {
           {"problems",
            {{{"synthetic", "star"}, {"name", "star"}, {"points", 60}, {"control_points", {8, 12}}},
             {{"synthetic", "wave"}, {"name", "wave"}, {"points", 40}, {"control_points", 9}}}},
-          {"solvers", {"banded_cholesky", "cg", {{"solver", "lbfgs"}, {"options", {{"memory", {3, 10}}}}}, "lspia"}},
+          {"solvers",
+           {"banded_cholesky",
+            "cg",
+            {{"solver", "lbfgs"}, {"options", {{"memory", {3, 10}}}}},
+            "lspia"}},
           {"budgets", {{"seconds", 20}, {"iterations", 200}}},
           {"warm_up", 0},
           {"repetitions", 4}};
@@ -31,7 +35,8 @@ class Bench : public ::testing::Test {
   std::vector<std::string> Arguments(const std::string& suite, const std::string& out) const {
     return {"bench", suite, "--out=" + (folder_ / out), "--nofigures", "--quiet"};
   }
-  Ended RunIn(const std::string& suite, const std::string& out, const std::string& flag = "") const {
+  Ended RunIn(const std::string& suite, const std::string& out,
+              const std::string& flag = "") const {
     std::vector<std::string> arguments = Arguments(suite, out);
     if (!flag.empty()) arguments.push_back(flag);
     return RunBatten(arguments);
@@ -131,8 +136,8 @@ TEST_F(Bench, PartsMergeToTheWhole) {
     ASSERT_EQ(RunIn(suite, out, std::string("--shard=") + part + "/2").status, 0);
   }
   for (int twice = 0; twice < 2; ++twice) {
-    const Ended merged = RunBatten({"merge", folder_ / "merged", folder_ / "part_1",
-                                    folder_ / "part_2", "--nofigures"});
+    const Ended merged = RunBatten(
+        {"merge", folder_ / "merged", folder_ / "part_1", folder_ / "part_2", "--nofigures"});
     ASSERT_EQ(merged.status, 0) << merged.err;
     EXPECT_THAT(merged.out, HasSubstr("60 cells, 0 missing"));
     EXPECT_EQ(TimelessTable("merged"), TimelessTable("whole"));
@@ -198,8 +203,8 @@ TEST_F(Bench, RegressTestsTimesOfAllCells) {
   const Ended slower = RunBatten({"regress", folder_ / "before", folder_ / "now"});
   EXPECT_EQ(slower.status, 4) << slower.out;
   EXPECT_THAT(slower.err, HasSubstr("all solvers need 1.2 times the seconds"));
-  EXPECT_EQ(
-      RunBatten({"regress", folder_ / "before", folder_ / "now", "--slowdown=0.5"}).status, 0);
+  EXPECT_EQ(RunBatten({"regress", folder_ / "before", folder_ / "now", "--slowdown=0.5"}).status,
+            0);
 }
 
 struct BadSuite {
@@ -223,60 +228,90 @@ TEST_P(BadSuites, GetOneLineWithThePath) {
 INSTANTIATE_TEST_SUITE_P(
     BenchCommand, BadSuites,
     ::testing::Values(
-        BadSuite{"UnknownKey", [](json* s) { (*s)["repetition"] = 3; },
+        BadSuite{"UnknownKey",
+                 [](json* s) { (*s)["repetition"] = 3; },
                  {"unknown key", "did you mean repetitions?"}},
         BadSuite{"NoFormat", [](json* s) { s->erase("format"); }, {"/format: found nothing"}},
-        BadSuite{"WrongType", [](json* s) { (*s)["repetitions"] = "five"; },
+        BadSuite{"WrongType",
+                 [](json* s) { (*s)["repetitions"] = "five"; },
                  {"/repetitions: found \"five\"; allowed: 1 to 1000"}},
-        BadSuite{"NoProblems", [](json* s) { (*s)["problems"] = json::array(); },
+        BadSuite{"NoProblems",
+                 [](json* s) { (*s)["problems"] = json::array(); },
                  {"/problems: found an empty list"}},
-        BadSuite{"ProblemUnknown", [](json* s) { (*s)["problems"][0] = "rihno"; },
+        BadSuite{"ProblemUnknown",
+                 [](json* s) { (*s)["problems"][0] = "rihno"; },
                  {"/problems/0", "did you mean rhino?"}},
-        BadSuite{"ProblemKey", [](json* s) { (*s)["problems"][0]["point"] = 3; },
+        BadSuite{"ProblemKey",
+                 [](json* s) { (*s)["problems"][0]["point"] = 3; },
                  {"/problems/0", "did you mean points?"}},
-        BadSuite{"MissingFile",
-                 [](json* s) {
-                   (*s)["problems"][0] = {
-                       {"data", "no/such.csv"}, {"name", "x"}, {"control_points", 9}};
-                 },
-                 {"/problems/0/data: found \"no/such.csv\"; allowed: a file in"}},
+        BadSuite{
+            "MissingFile",
+            [](json* s) {
+              (*s)["problems"][0] = {{"data", "no/such.csv"}, {"name", "x"}, {"control_points", 9}};
+            },
+            {"/problems/0/data: found \"no/such.csv\"; allowed: a file in"}},
         BadSuite{"EmptyGrid",
                  [](json* s) { (*s)["problems"][0]["control_points"] = json::array(); },
                  {"/problems/0/control_points: found an empty list"}},
-        BadSuite{"GridValue", [](json* s) { (*s)["problems"][0]["control_points"] = {8, -3}; },
+        BadSuite{"GridValue",
+                 [](json* s) {
+                   (*s)["problems"][0]["control_points"] = {8, -3};
+                 },
                  {"/problems/0/control_points/1: found -3"}},
         BadSuite{"TooFewControlPoints",
-                 [](json* s) { (*s)["problems"][1]["control_points"] = 2; }, {"/problems/1"}},
-        BadSuite{"SolverUnknown", [](json* s) { (*s)["solvers"][1] = "gc"; },
+                 [](json* s) { (*s)["problems"][1]["control_points"] = 2; },
+                 {"/problems/1"}},
+        BadSuite{"SolverUnknown",
+                 [](json* s) { (*s)["solvers"][1] = "gc"; },
                  {"/solvers/1", "did you mean cg?"}},
         BadSuite{"SolverOption",
-                 [](json* s) { (*s)["solvers"][2]["options"] = {{"memry", {3}}}; },
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memry", {3}}};
+                 },
                  {"/solvers/2/options/memry", "memory"}},
         BadSuite{"SolverOptionRange",
-                 [](json* s) { (*s)["solvers"][2]["options"] = {{"memory", {3, 0}}}; },
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memory", {3, 0}}};
+                 },
                  {"/solvers/2/options/memory"}},
         BadSuite{"EmptyOptionGrid",
                  [](json* s) {
                    (*s)["solvers"][2]["options"] = {{"memory", json::array()}};
                  },
                  {"/solvers/2/options/memory: found an empty list"}},
-        BadSuite{"SolverTwice", [](json* s) { (*s)["solvers"][0] = "lbfgs"; },
+        BadSuite{"SolverTwice",
+                 [](json* s) { (*s)["solvers"][0] = "lbfgs"; },
                  {"/solvers/2: found lbfgs/memory=10 twice"}},
-        BadSuite{"Term", [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
+        BadSuite{"Term",
+                 [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
                  {"/terms/0", "did you mean fairing?"}},
-        BadSuite{"NegativeBudget", [](json* s) { (*s)["budgets"]["seconds"] = -1; },
+        BadSuite{"NegativeBudget",
+                 [](json* s) { (*s)["budgets"]["seconds"] = -1; },
                  {"/budgets/seconds: found -1; allowed: 0.001 to"}},
-        BadSuite{"BudgetKey", [](json* s) { (*s)["budgets"] = {{"second", 1}}; },
+        BadSuite{"BudgetKey",
+                 [](json* s) {
+                   (*s)["budgets"] = {{"second", 1}};
+                 },
                  {"/budgets", "did you mean seconds?"}},
-        BadSuite{"Target", [](json* s) { (*s)["targets"] = {{"gaps", {0.1, 2}}}; },
+        BadSuite{"Target",
+                 [](json* s) {
+                   (*s)["targets"] = {{"gaps", {0.1, 2}}};
+                 },
                  {"/targets/gaps/1: found 2"}},
-        BadSuite{"Seeds", [](json* s) { (*s)["seeds"] = {{"start", {1, 1.5}}}; },
+        BadSuite{"Seeds",
+                 [](json* s) {
+                   (*s)["seeds"] = {{"start", {1, 1.5}}};
+                 },
                  {"/seeds/start/1: found 1.5"}},
         BadSuite{"ExclusionOfNothing",
-                 [](json* s) { (*s)["exclude"] = {{{"solvers", {"gim*"}}}}; },
+                 [](json* s) {
+                   (*s)["exclude"] = {{{"solvers", {"gim*"}}}};
+                 },
                  {"/exclude/0: matches nothing"}},
         BadSuite{"ExclusionOfAll",
-                 [](json* s) { (*s)["exclude"] = {{{"solvers", {"*"}}}}; },
+                 [](json* s) {
+                   (*s)["exclude"] = {{{"solvers", {"*"}}}};
+                 },
                  {"/exclude: leaves nothing to run"}}),
     [](const auto& info) { return std::string(info.param.name); });
 
