@@ -197,7 +197,14 @@ bool ReadBenchProblems(const StrictObject& entry, const std::string& suite_path,
   if (base.entry.spec.control_points == 0 && grid.control_points.empty()) {
     return entry.Refuse("control_points", "a whole number, or a list of them");
   }
+  const std::size_t first = problems->size();
   Spread(base, grid, problems);
+  for (std::size_t k = first; k < problems->size(); ++k) {
+    // Data are made on the spline's own knots, before anything else could see that there are none.
+    const FitSpec& spec = (*problems)[k].entry.spec;
+    if (!base.truth || spec.closed || spec.control_points > spec.degree) continue;
+    return entry.Refuse("control_points", "more than the degree, " + std::to_string(spec.degree));
+  }
   return true;
 }
 
