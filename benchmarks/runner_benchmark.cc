@@ -59,7 +59,8 @@ void BM_RunnerCost(benchmark::State& state) {
   double cost = 0.0;
   {
     AppendOnlyFile file;
-    file.Open(path, [](const std::string&) {}, &error);
+    file.Open(
+        path, [](const std::string&) {}, &error);
     for (auto _ : state) {
       const double one = CostOfCell(seconds, &file);
       cost += one;
