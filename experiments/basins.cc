@@ -77,7 +77,11 @@ double CurveDistanceBetween(const BsplineCurve& a, const BsplineCurve& b) {
 }
 
 std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>& ends) {
-  const CurveFit& fit = *problem.curve_fit();
+  return FindBasins(problem.curve_fit()->basis(), problem.curve_fit()->size(), ends);
+}
+
+std::vector<int> FindBasins(const BsplineBasis& basis, double size,
+                            const std::vector<BasinEnd>& ends) {
   std::vector<std::size_t> order(ends.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&ends](std::size_t a, std::size_t b) {
@@ -89,13 +93,13 @@ std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>&
   std::vector<std::size_t> firsts;  // of the basins
   std::vector<int> basins(ends.size(), -1);
   for (const std::size_t k : order) {
-    const BsplineCurve curve(fit.basis(), ends[k].control_points);
+    const BsplineCurve curve(basis, ends[k].control_points);
     for (std::size_t b = firsts.size(); b-- > 0 && basins[k] < 0;) {
       const BasinEnd& first = ends[firsts[b]];
       const double apart = ends[k].energy_at_foot_points - first.energy_at_foot_points;
       if (apart > kLikeEnergies * ends[k].energy_at_foot_points) break;
-      const BsplineCurve other(fit.basis(), first.control_points);
-      if (CurveDistanceBetween(curve, other) < kSameCurve * fit.size()) {
+      const BsplineCurve other(basis, first.control_points);
+      if (CurveDistanceBetween(curve, other) < kSameCurve * size) {
         basins[k] = static_cast<int>(b);
       }
     }

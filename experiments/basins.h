@@ -29,6 +29,9 @@ double CurveDistanceBetween(const BsplineCurve& a, const BsplineCurve& b);
 /// Basin of each end, 0, 1, ... in the order of their energies at foot points: ends whose curves
 /// are nearer to each other than kSameCurve of the data's size share one.
 std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>& ends);
+/// The same where the problem is not at hand: `size` is that of its data.
+std::vector<int> FindBasins(const BsplineBasis& basis, double size,
+                            const std::vector<BasinEnd>& ends);
 inline constexpr double kSameCurve = 1e-6;
 
 }  // namespace batten

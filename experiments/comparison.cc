@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "experiments/basins.h"
-#include "experiments/comparison_reference.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -50,7 +49,6 @@ class ProblemComparison {
   void MeasureTrace(ComparisonRow* row) const;
   void Measure(std::size_t solver);
   void FindRowBasins();
-  void CheckDistance(const ComparisonRow& row, ComparisonResult* result) const;
 
   const ComparisonSpec& spec_;
   const Problem& problem_;
@@ -162,26 +160,7 @@ void ProblemComparison::Measure(std::size_t solver) {
   row.solve_seconds = Median(times.solve);
   row.seconds = Median(times.all);
   row.times_cholesky = row.seconds / Median(cholesky_.all);
-  row.unique_minimum = direct_.unique();
-  if (const CurveFit* fit = problem_.curve_fit()) row.parameter_kind = fit->spec().parameter_kind;
-  row.gap = row.distance_to_direct = row.allowed_distance = kNan;
-  if (!row.run.skipped.empty()) return;
-  row.gap = direct_.Gap(row.run.x);
-  row.distance_to_direct = direct_.Distance(row.run.x);
-  row.allowed_distance = direct_.AllowedDistance(row.run);
-  row.report = MeasureFit(problem_, row.run, spec_.run);
-}
-
-void ProblemComparison::CheckDistance(const ComparisonRow& row, ComparisonResult* result) const {
-  if (!row.run.skipped.empty() || !direct_.known()) return;
-  if (!ClaimOf(row.run, spec_.run).minimum) return;
-  if (row.distance_to_direct <= row.allowed_distance) return;
-  result->disagreements.push_back(
-      row.problem + ": " + row.solver + " claims a minimum (" + ToString(row.run.outcome.reason) +
-      "), but " + (row.unique_minimum ? "a control point" : "A P") + " is " +
-      NumberText(row.distance_to_direct) +
-      " of the data's size away from the direct answer; |g| at its end allows " +
-      NumberText(row.allowed_distance));
+  MeasureEnd(problem_, direct_, spec_.run, &row);
 }
 
 /// Follows every end to the rounding floor, off the clock.
@@ -204,7 +183,8 @@ void ProblemComparison::AddTo(ComparisonResult* result) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     if (rows_[k].solver.empty()) continue;  // interrupted before its first run
     Measure(k);
-    CheckDistance(rows_[k], result);
+    std::string sentence = Disagreement(direct_, spec_.run, rows_[k]);
+    if (!sentence.empty()) result->disagreements.push_back(std::move(sentence));
     result->rows.push_back(std::move(rows_[k]));
   }
 }
@@ -247,6 +227,30 @@ bool Compare(const ComparisonSpec& spec, ComparisonResult* result, std::string* 
   result->minimum_energies.resize(spec.problems.size(), kNan);
   result->interrupted = InterruptRequested();
   return true;
+}
+
+void MeasureEnd(const Problem& problem, const DirectReference& direct, const RunSpec& spec,
+                ComparisonRow* row) {
+  if (const CurveFit* fit = problem.curve_fit()) row->parameter_kind = fit->spec().parameter_kind;
+  row->unique_minimum = direct.unique();
+  row->gap = row->distance_to_direct = row->allowed_distance = kNan;
+  if (!row->run.skipped.empty()) return;
+  row->gap = direct.Gap(row->run.x);
+  row->distance_to_direct = direct.Distance(row->run.x);
+  row->allowed_distance = direct.AllowedDistance(row->run);
+  row->report = MeasureFit(problem, row->run, spec);
+}
+
+std::string Disagreement(const DirectReference& direct, const RunSpec& spec,
+                         const ComparisonRow& row) {
+  if (!row.run.skipped.empty() || !direct.known() || !ClaimOf(row.run, spec).minimum) return "";
+  if (row.distance_to_direct <= row.allowed_distance) return "";
+  return row.problem + ": " + row.solver + " claims a minimum (" +
+         ToString(row.run.outcome.reason) + "), but " +
+         (row.unique_minimum ? "a control point" : "A P") + " is " +
+         NumberText(row.distance_to_direct) +
+         " of the data's size away from the direct answer; |g| at its end allows " +
+         NumberText(row.allowed_distance);
 }
 
 double Median(std::vector<double> values) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/comparison_reference.h"
 #include "experiments/fit_report.h"
 #include "experiments/run.h"
 #include "problems/catalogue.h"
@@ -66,6 +67,15 @@ struct ComparisonResult {
 /// without a row). False with one sentence in `error` for unknown names or unreadable problems,
 /// found before anything runs.
 bool Compare(const ComparisonSpec& spec, ComparisonResult* result, std::string* error);
+
+/// Fills in what is measured at the end of row->run: gap, distances, report. Not what belongs to
+/// several runs: times.
+void MeasureEnd(const Problem& problem, const DirectReference& direct, const RunSpec& spec,
+                ComparisonRow* row);
+/// The sentence about a measured row that claims a minimum farther from the direct answer than |g|
+/// and the condition allow; empty if it agrees or there is no direct answer.
+std::string Disagreement(const DirectReference& direct, const RunSpec& spec,
+                         const ComparisonRow& row);
 
 /// The middle one, or the mean of both; NaN for none.
 double Median(std::vector<double> values);

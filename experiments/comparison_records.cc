@@ -1,5 +1,6 @@
+#include "experiments/comparison_records.h"
+
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
@@ -102,28 +103,9 @@ void AddBuild(Json* json) {
 }
 
 Json RowJson(const ComparisonResult& result, const ComparisonRow& row) {
-  Json json;
-  json["format"] = "batten.cell/1";
-  AddOutcome(row, &json);
-  const std::size_t num_words = json.size();
   const auto index = static_cast<std::size_t>(row.problem_index);
   const auto& minima = result.minimum_energies;
-  AddEffort(row, &json);
-  AddAccuracy(row, index < minima.size() ? minima[index] : std::nan(""), &json);
-  if (!row.run.skipped.empty()) ClearNumbers(num_words, &json);
-  AddConditions(result.spec.run, &json);
-  json["options"] = row.run.options;
-  json["notes"] = Json::array();
-  for (const auto& [name, value] : row.run.notes) {
-    json["notes"].push_back({{"name", name}, {"value", value}});
-  }
-  AddBuild(&json);
-  return json;
-}
-
-std::string Dump(const Json& json, int indent) {
-  // Problem files may hold anything: bad UTF-8 is replaced, not thrown at.
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return CellJson(row, index < minima.size() ? minima[index] : std::nan(""), result.spec.run);
 }
 
 /// RFC 4180.
@@ -154,6 +136,28 @@ std::string CsvField(const Json& value) {
 }
 
 }  // namespace
+
+Json CellJson(const ComparisonRow& row, double minimum_energy, const RunSpec& spec) {
+  Json json;
+  json["format"] = "batten.cell/1";
+  AddOutcome(row, &json);
+  const std::size_t num_words = json.size();
+  AddEffort(row, &json);
+  AddAccuracy(row, minimum_energy, &json);
+  if (!row.run.skipped.empty()) ClearNumbers(num_words, &json);
+  AddConditions(spec, &json);
+  json["options"] = row.run.options;
+  json["notes"] = Json::array();
+  for (const auto& [name, value] : row.run.notes) {
+    json["notes"].push_back({{"name", name}, {"value", value}});
+  }
+  AddBuild(&json);
+  return json;
+}
+
+std::string DumpJson(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 std::string ComparisonCsv(const ComparisonResult& result) {
   std::string header;
@@ -186,12 +190,12 @@ std::string ComparisonJson(const ComparisonResult& result) {
   for (const ComparisonRow& row : result.rows) json["rows"].push_back(RowJson(result, row));
   json["disagreements"] = result.disagreements;
   json["interrupted"] = result.interrupted;
-  return Dump(json, 1) + "\n";
+  return DumpJson(json, 1) + "\n";
 }
 
 std::string ComparisonJsonLines(const ComparisonResult& result) {
   std::string lines;
-  for (const ComparisonRow& row : result.rows) lines += Dump(RowJson(result, row), -1) + "\n";
+  for (const ComparisonRow& row : result.rows) lines += DumpJson(RowJson(result, row), -1) + "\n";
   return lines;
 }
 

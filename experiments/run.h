@@ -68,6 +68,11 @@ struct RunResult {
   /// By which nonlinear constraints are missed at the end, in the user's units; 0 without any.
   double violation = 0.0;
   double observed_rate = 0.0;  ///< Factor of |g| per iteration near the end; NaN: none.
+  /// Of the points at which it evaluated and which it booked, in their order, equal ones that
+  /// follow each other once: two solvers with one hash and count are one method.
+  std::uint64_t stream_hash = 0;
+  long stream_points = 0;
+  long calls_past_stop = 0;  ///< Evaluations and iterations after it was told to stop.
   std::vector<std::pair<std::string, std::string>> notes;
   std::vector<TraceRow> trace;
   std::vector<Iterate> iterates;

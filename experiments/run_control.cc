@@ -60,7 +60,10 @@ RunControl::RunControl(const Problem& problem, const RunSpec& spec, NativeRule r
       reporter_(&problem, nullptr, Objective::Options{spec.compile}) {}
 
 bool RunControl::Allow(Evaluation kind, const Eigen::VectorXd* x) {
-  if (stop_reason_ != StopReason::kNotRun) return false;
+  if (stop_reason_ != StopReason::kNotRun) {
+    ++result_->calls_past_stop;
+    return false;
+  }
   if (InterruptRequested()) {
     stop_reason_ = StopReason::kInterrupted;
   } else if (watch_.SecondsNow() > spec_.max_seconds) {
@@ -86,7 +89,11 @@ bool RunControl::Allow(Evaluation kind, const Eigen::VectorXd* x) {
       break;
   }
   if (x != nullptr && kind != Evaluation::kProduct) {
-    OffTheClock([this, x] { points_.insert(HashPoint(*x)); });
+    OffTheClock([this, x] {
+      const std::uint64_t point = HashPoint(*x);
+      points_.insert(point);
+      AddToStream(point);
+    });
   }
   return true;
 }
@@ -105,12 +112,21 @@ void RunControl::Note(const std::string& name, const std::string& value) {
 
 Status RunControl::Iterate(const Eigen::VectorXd& x) {
   watch_.Pause();
+  if (stop_reason_ != StopReason::kNotRun) ++result_->calls_past_stop;
   ++iteration_;
+  AddToStream(HashPoint(x));
   Book(x);
   if (stop_reason_ == StopReason::kNotRun) stop_reason_ = CheckStop(row_);
   if (stop_reason_ == StopReason::kNotRun) stop_reason_ = CheckConverged(row_, x);
   watch_.Resume();
   return stop_reason_ == StopReason::kNotRun ? Status::kOk : Status::kStop;
+}
+
+void RunControl::AddToStream(std::uint64_t point) {
+  if (result_->stream_points > 0 && point == last_point_) return;
+  last_point_ = point;
+  ++result_->stream_points;
+  result_->stream_hash = (result_->stream_hash ^ point) * 1099511628211ULL;
 }
 
 void RunControl::Book(const Eigen::VectorXd& x) {

@@ -57,6 +57,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   double Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient,
                   double* violation);
   void BookStart();
+  void AddToStream(std::uint64_t point);
   double LineSearchFloor(const Eigen::VectorXd& x, double energy, const Eigen::VectorXd& gradient);
   double StepNorm(const Eigen::VectorXd& x) const;
 
@@ -68,6 +69,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   Stopwatch watch_;
   StopReason stop_reason_ = StopReason::kNotRun;
   std::unordered_set<std::uint64_t> points_;
+  std::uint64_t last_point_ = 0;  // of the stream
   Eigen::VectorXd last_x_;
   TraceRow row_;
   bool is_held_ = true;  // nonlinear constraints, at the last iterate

@@ -58,4 +58,40 @@ std::string LatexNumber(const std::string& text) {
          std::to_string(std::stoi(text.substr(exponent + 1))) + "}$";
 }
 
+std::string TableMarkdown(const CsvTable& table) {
+  std::string text = "|", rule = "|";
+  for (const std::string& column : table.columns()) {
+    text += " " + MarkdownText(column) + " |";
+    rule += " --- |";
+  }
+  text += "\n" + rule + "\n";
+  for (std::size_t row = 0; row < table.num_rows(); ++row) {
+    text += "|";
+    for (const std::string& column : table.columns()) {
+      text += " " + MarkdownText(table.Text(row, column)) + " |";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string TableLatex(const CsvTable& table, const std::string& caption) {
+  std::string text = "% Needs \\usepackage{booktabs}.\n\\begin{table*}\n\\centering\\scriptsize\n";
+  text += "\\caption{" + LatexText(caption) + "}\n\\begin{tabular}{" +
+          std::string(table.columns().size(), 'l') + "}\n\\toprule\n";
+  std::string line;
+  for (const std::string& column : table.columns()) {
+    line += (line.empty() ? "" : " & ") + LatexText(column);
+  }
+  text += line + " \\\\\n\\midrule\n";
+  for (std::size_t row = 0; row < table.num_rows(); ++row) {
+    line.clear();
+    for (std::size_t c = 0; c < table.columns().size(); ++c) {
+      line += (c > 0 ? " & " : "") + LatexNumber(table.Text(row, table.columns()[c]));
+    }
+    text += line + " \\\\\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
+}
+
 }  // namespace batten

@@ -3,16 +3,20 @@
 
 #include <string>
 
+#include "experiments/csv_table.h"
+
 namespace batten {
 
-/// `text` as one cell of a Markdown table.
+// Text as it stands in tables of documents, on one line.
+
 std::string MarkdownText(const std::string& text);
-
-/// `text` as LaTeX shows it.
 std::string LatexText(const std::string& text);
-
-/// A number as a cell of a LaTeX table, 1.2e-10 as a power of ten; other text as LatexText.
+/// 1.2e-10 as a power of ten; what is no such number as LatexText().
 std::string LatexNumber(const std::string& text);
+
+std::string TableMarkdown(const CsvTable& table);
+/// A table environment; needs \usepackage{booktabs}.
+std::string TableLatex(const CsvTable& table, const std::string& caption);
 
 }  // namespace batten
 

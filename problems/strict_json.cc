@@ -226,4 +226,61 @@ bool StrictObject::Object(const std::string& key, Presence presence, StrictObjec
   return true;
 }
 
+bool StrictObject::Integers(const std::string& key, Presence presence, int lowest, int highest,
+                            std::vector<int>* values) const {
+  if (!IsList(key)) {
+    int value = 0;
+    if (!Integer(key, presence, lowest, highest, &value)) return false;
+    if (Has(key)) *values = {value};
+    return true;
+  }
+  std::vector<double> numbers;
+  if (!Numbers(key, presence, &numbers)) return false;
+  std::vector<int> read;
+  for (const double number : numbers) {
+    if (number != std::trunc(number) || number < lowest || number > highest) {
+      return Refuse(key + "/" + std::to_string(read.size()),
+                    std::to_string(lowest) + " to " + std::to_string(highest) + ", whole numbers");
+    }
+    read.push_back(static_cast<int>(number));
+  }
+  *values = std::move(read);
+  return true;
+}
+
+bool StrictObject::Entries(const std::string& key, Presence presence, const std::string& allowed,
+                           std::vector<StrictObject>* entries) const {
+  bool result = true;
+  if (!IsThere(key, presence, allowed, &result)) return result;
+  if (!IsList(key) || Find(key)->empty()) return Refuse(key, allowed);
+  for (const Json& entry : *Find(key)) {
+    const std::string place = pointer_ + "/" + key + "/" + std::to_string(entries->size());
+    entries->emplace_back(file_, place, &entry, error_);
+  }
+  return true;
+}
+
+bool StrictObject::IsText(std::string* text) const {
+  if (json_ == nullptr || !json_->is_string()) return false;
+  *text = json_->get<std::string>();
+  return true;
+}
+
+bool StrictObject::IsNumber(double* number) const {
+  if (json_ == nullptr || !json_->is_number()) return false;
+  *number = json_->get<double>();
+  return true;
+}
+
+bool StrictObject::IsNumber(const std::string& key) const {
+  return Has(key) && Find(key)->is_number();
+}
+
+std::vector<std::string> StrictObject::Keys() const {
+  std::vector<std::string> keys;
+  if (json_ == nullptr || !json_->is_object()) return keys;
+  for (const auto& item : json_->items()) keys.push_back(item.key());
+  return keys;
+}
+
 }  // namespace batten

@@ -39,9 +39,21 @@ class StrictObject {
   bool Numbers(const std::string& key, Presence presence, std::vector<double>* values) const;
   bool Texts(const std::string& key, Presence presence, std::vector<std::string>* values) const;
   bool Object(const std::string& key, Presence presence, StrictObject* value) const;
+  /// Whole numbers lowest..highest: a list of them, or one alone.
+  bool Integers(const std::string& key, Presence presence, int lowest, int highest,
+                std::vector<int>* values) const;
+  /// The entries of a list, which need not be objects.
+  bool Entries(const std::string& key, Presence presence, const std::string& allowed,
+               std::vector<StrictObject>* entries) const;
+  /// What stands here is a text and no object.
+  bool IsText(std::string* text) const;
+  bool IsNumber(double* number) const;
+  /// The keys of the object that stands here, in alphabetical order.
+  std::vector<std::string> Keys() const;
 
   /// Whether `key` holds a list.
   bool IsList(const std::string& key) const;
+  bool IsNumber(const std::string& key) const;
   /// False, with `FILE: POINTER/key: found ...; allowed: ` and `allowed`. `key` may go deeper:
   /// "terms/2", "control_points/2/0".
   bool Refuse(const std::string& key, const std::string& allowed) const;

@@ -21,8 +21,8 @@ bool IsAny(const std::string& text, const std::vector<std::string>& words) {
 
 const std::vector<Command>& Commands() {
   static const auto& commands = *new std::vector<Command>{
-      FitCommand(),       CompareCommand(), ReproduceCommand(),
-      SubdivideCommand(), ListCommand(),    HelpCommand(),
+      FitCommand(),       CompareCommand(),   BenchCommand(), MergeCommand(), RegressCommand(),
+      ReproduceCommand(), SubdivideCommand(), ListCommand(),  HelpCommand(),
   };
   return commands;
 }

@@ -13,6 +13,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kNotReached = 1;    // the solver failed or did not reach what was asked
 inline constexpr int kBadInput = 2;      // bad input or usage, a file that cannot be written
 inline constexpr int kDisagreement = 3;  // solvers disagree or a claim failed its audit
+inline constexpr int kRegression = 4;    // slower or worse than before
 inline constexpr int kFault = 70;        // a fault of ours, or memory ran out
 inline constexpr int kInterruptedStatus = 130;
 
@@ -40,6 +41,9 @@ const Command* FindCommand(const std::string& name);
 
 Command FitCommand();        // fit_command.cc
 Command CompareCommand();    // compare_command.cc
+Command BenchCommand();      // bench_command.cc
+Command MergeCommand();      // merge_command.cc
+Command RegressCommand();    // regress_command.cc
 Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
 Command ListCommand();       // list_command.cc

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "experiments/comparison_tables.h"
+#include "experiments/content_hash.h"
 #include "problems/input_file.h"
 #include "tools/cell_reader.h"
 
@@ -15,25 +15,6 @@ namespace batten {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::uint64_t kHashBasis = 14695981039346656037ULL;
-
-std::uint64_t Hash(const char* bytes, size_t count, std::uint64_t hash) {
-  for (size_t i = 0; i < count; ++i) {  // FNV-1a
-    hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 1099511628211ULL;
-  }
-  return hash;
-}
-
-std::uint64_t HashFile(const std::string& path, std::uint64_t hash) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> bytes(1 << 16);
-  while (file.good()) {
-    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    hash = Hash(bytes.data(), static_cast<size_t>(file.gcount()), hash);
-  }
-  return hash;
-}
 
 /// The sentence about this row; null if solvers agree.
 Json DisagreementOf(const std::string& problem, const std::string& solver,
@@ -49,8 +30,10 @@ Json DisagreementOf(const std::string& problem, const std::string& solver,
 
 std::string CellKey(const CatalogueEntry& entry, const NameSpec& solver,
                     const ComparisonSpec& spec) {
-  static const std::uint64_t program = HashFile("/proc/self/exe", kHashBasis);
-  const std::uint64_t files = HashFile(entry.data_path, HashFile(entry.path, program));
+  ContentHash hash;
+  hash.AddProgram();
+  hash.AddFile(entry.path);
+  hash.AddFile(entry.data_path);
   const RunSpec& run = spec.run;
   std::ostringstream text;
   text << entry.name << ' ' << solver.ToString() << ' ' << ToString(run.mode) << ' '
@@ -58,10 +41,8 @@ std::string CellKey(const CatalogueEntry& entry, const NameSpec& solver,
        << NumberText(run.max_seconds) << ' ' << NumberText(run.native_step) << ' '
        << NumberText(run.native_gradient) << ' ' << run.seed << ' ' << run.threads << ' '
        << run.compile << ' ' << spec.repetitions;
-  char digits[17];
-  std::snprintf(digits, sizeof(digits), "%016llx",
-                static_cast<unsigned long long>(Hash(text.str().data(), text.str().size(), files)));
-  return digits;
+  hash.Add(text.str());
+  return hash.Digits();
 }
 
 void ComparisonCells::Read() {

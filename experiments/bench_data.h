@@ -1,0 +1,34 @@
+#ifndef BATTEN_EXPERIMENTS_BENCH_DATA_H_
+#define BATTEN_EXPERIMENTS_BENCH_DATA_H_
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace batten {
+
+/// A folder of `bench` or `merge`, read back.
+struct BenchData {
+  std::string folder;
+  nlohmann::json manifest;
+  std::vector<nlohmann::json> rows;  // of the manifest's cells, in its order, as far as finished
+  std::map<std::string, nlohmann::json> instances;  // by key
+  std::size_t num_cells = 0;                        // that there are to be
+};
+
+/// False with one sentence in `error` for a folder without results of this format.
+bool ReadBenchData(const std::string& folder, BenchData* data, std::string* error);
+
+// Fields of rows, which somebody may have edited: what has another type is as if it were not there.
+
+/// NaN where there is no number.
+double NumberAt(const nlohmann::json& row, const char* key);
+std::string TextAt(const nlohmann::json& row, const char* key);
+bool FlagAt(const nlohmann::json& row, const char* key);
+std::vector<std::string> TextsAt(const nlohmann::json& row, const char* key);
+std::vector<double> NumbersAt(const nlohmann::json& row, const char* key);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_BENCH_DATA_H_

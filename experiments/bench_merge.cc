@@ -1,0 +1,141 @@
+#include "experiments/bench_merge.h"
+
+#include <filesystem>
+
+#include "experiments/atomic_file.h"
+#include "experiments/bench_data.h"
+#include "experiments/bench_store.h"
+#include "experiments/comparison_records.h"
+
+namespace batten {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool AreAlike(const BenchData& a, const BenchData& b, std::string* error) {
+  for (const auto& [key, what] : {std::pair{"suite_hash", "another suite"},
+                                  {"program_hash", "another program"},
+                                  {"flags", "other compiler flags"}}) {
+    if (TextAt(a.manifest, key) == TextAt(b.manifest, key)) continue;
+    *error = b.folder + ": found " + what + " than in " + a.folder +
+             "; allowed: parts of one suite run by one program";
+    return false;
+  }
+  return true;
+}
+
+bool CopyFile(const std::string& from, const std::string& to, std::string* error) {
+  std::error_code failure;
+  if (!fs::exists(from, failure)) return true;
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
+  if (failure) *error = "cannot write " + to + ": " + failure.message();
+  return !failure;
+}
+
+/// Traces and logs before the rows, which say that they are there.
+bool CopyCellFiles(const BenchData& data, const std::string& key, const std::string& out,
+                   std::string* error) {
+  for (const std::string& name : {"/traces/" + key + ".csv", "/logs/" + key + ".log"}) {
+    if (!CopyFile(data.folder + name, out + name, error)) return false;
+  }
+  return true;
+}
+
+bool MergeManifests(const std::string& out, const std::vector<BenchData>& parts,
+                    std::string* error) {
+  nlohmann::json manifest = parts[0].manifest;
+  nlohmann::json sessions = nlohmann::json::array();
+  for (const BenchData& part : parts) {
+    const auto found = part.manifest.find("sessions");
+    if (found == part.manifest.end() || !found->is_array()) continue;
+    for (const nlohmann::json& session : *found) sessions.push_back(session);
+  }
+  manifest["sessions"] = std::move(sessions);
+  return WriteFileAtomically(
+      out + "/manifest.json",
+      manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", error);
+}
+
+/// Appends what is not there yet.
+class Merger {
+ public:
+  explicit Merger(std::string out) : out_(std::move(out)) {}
+
+  bool Open(std::string* error) {
+    for (const char* folder : {"", "/traces", "/logs"}) {
+      if (!CreateDirectories(out_ + folder, error)) return false;
+    }
+    const auto Note = [](std::map<std::string, bool>* keys) {
+      return [keys](const std::string& line) {
+        const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+        if (!TextAt(json, "key").empty()) (*keys)[TextAt(json, "key")] = true;
+      };
+    };
+    return cells_.Open(out_ + "/cells.jsonl", Note(&cell_keys_), error) &&
+           instances_.Open(out_ + "/instances.jsonl", Note(&instance_keys_), error);
+  }
+
+  bool Add(const BenchData& data, MergeReport* report, std::string* error) {
+    for (const auto& [key, instance] : data.instances) {
+      if (!instance_keys_.emplace(key, true).second) continue;
+      if (!instances_.Append(instance.dump(), error)) return false;
+    }
+    for (const nlohmann::json& row : data.rows) {
+      const std::string key = TextAt(row, "key");
+      if (!cell_keys_.emplace(key, true).second) {
+        ++report->duplicates;
+        continue;
+      }
+      if (!CopyCellFiles(data, key, out_, error) || !cells_.Append(row.dump(), error)) return false;
+    }
+    return true;
+  }
+
+  bool Sync(std::string* error) { return cells_.Sync(error) && instances_.Sync(error); }
+
+ private:
+  std::string out_;
+  AppendOnlyFile cells_;
+  AppendOnlyFile instances_;
+  std::map<std::string, bool> cell_keys_;
+  std::map<std::string, bool> instance_keys_;
+};
+
+}  // namespace
+
+bool MergeBenches(const std::string& out, const std::vector<std::string>& folders,
+                  MergeReport* report, std::string* error) {
+  std::vector<BenchData> parts;
+  std::error_code ignored;
+  // What is in OUT already counts as its first part.
+  if (fs::exists(out + "/manifest.json", ignored)) {
+    parts.emplace_back();
+    if (!ReadBenchData(out, &parts.back(), error)) return false;
+  }
+  const bool has_own = !parts.empty();
+  for (const std::string& folder : folders) {
+    if (fs::equivalent(folder, out, ignored)) {
+      *error = folder + ": found the folder to merge into; allowed: others";
+      return false;
+    }
+    parts.emplace_back();
+    if (!ReadBenchData(folder, &parts.back(), error)) return false;
+    if (!AreAlike(parts.front(), parts.back(), error)) return false;
+  }
+  Merger merger(out);
+  if (!merger.Open(error)) return false;
+  for (std::size_t k = has_own ? 1 : 0; k < parts.size(); ++k) {
+    if (!merger.Add(parts[k], report, error)) return false;
+  }
+  if (!merger.Sync(error) || !MergeManifests(out, parts, error) ||
+      !CopyFile(parts.back().folder + "/suite.json", out + "/suite.json", error)) {
+    return false;
+  }
+  BenchData merged;
+  if (!ReadBenchData(out, &merged, error)) return false;
+  report->cells = static_cast<int>(merged.rows.size());
+  report->missing = static_cast<int>(merged.num_cells - merged.rows.size());
+  return true;
+}
+
+}  // namespace batten

@@ -1,0 +1,125 @@
+#include "experiments/bench_notes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "cost_functions/options.h"
+#include "experiments/bench_targets.h"
+#include "solvers/run_context.h"
+
+namespace batten {
+namespace {
+
+std::string PlaceOf(const BenchResults& results, const BenchRun& run) {
+  return results.instances[run.instance].label + ": " + results.solvers[run.solver];
+}
+
+/// What one row has to say against its solver; empty: nothing.
+std::string Complaint(const nlohmann::json& row) {
+  const std::vector<std::string> flags = TextsAt(row, "findings");
+  const auto Has = [&flags](const char* flag) {
+    return std::find(flags.begin(), flags.end(), flag) != flags.end();
+  };
+  const std::string stop = TextAt(row, "stop");
+  for (const char* end : {"crashed", "out_of_memory", "wall_limit", "cpu_limit"}) {
+    if (stop != end) continue;
+    const std::string log = TextAt(row, "log");
+    return stop + ": " + TextAt(row, "message") + (log.empty() ? "" : " (" + log + ")");
+  }
+  if (!TextAt(row, "disagreement").empty()) return TextAt(row, "disagreement");
+  if (!TextAt(row, "failure").empty()) return "claim fails: " + TextAt(row, "failure");
+  if (Has("claim_fails")) {
+    return "claim fails: it says " + stop + ", and |g| at its end is " +
+           NumberText(NumberAt(row, "gradient_norm"));
+  }
+  if (Has("ignores_stop")) {
+    return "ignores stop: " + NumberText(NumberAt(row, "calls_past_stop")) +
+           " calls after it was told";
+  }
+  if (Has("no_finite_end")) return "its end is no finite number: " + stop;
+  return "";
+}
+
+void NoteRuns(BenchResults* results) {
+  for (const BenchRun& run : results->runs) {
+    std::set<std::string> said;
+    for (const nlohmann::json* row : run.rows) {
+      const std::string complaint = Complaint(*row);
+      if (!complaint.empty() && said.insert(complaint).second) {
+        results->notes.push_back(PlaceOf(*results, run) + ": " + complaint);
+      }
+      const std::vector<std::string> flags = TextsAt(*row, "findings");
+      const bool belied = std::count(flags.begin(), flags.end(), "claim_fails") > 0;
+      if (belied || !TextAt(*row, "disagreement").empty()) results->some_claim_failed = true;
+      StopReason reason = StopReason::kNotRun;
+      const std::string stop = TextAt(*row, "stop");
+      const bool reached = FromString(stop, &reason) && IsSuccess(reason);
+      if (!reached && stop != "skipped") results->some_failed = true;
+    }
+    if (run.repetitions_differ) {
+      results->notes.push_back(PlaceOf(*results, run) +
+                               ": its repetitions differ in more than time");
+    }
+  }
+}
+
+/// Solvers whose evaluations are the same, point by point, wherever both ran.
+void NoteTwins(BenchResults* results) {
+  constexpr double kFewestPoints = 3.0;  // less is a start and an answer
+  std::map<std::size_t, std::map<std::pair<std::size_t, int>, std::string>> streams;  // by solver
+  for (const BenchRun& run : results->runs) {
+    if (!run.ran || !(NumberAt(*run.first, "stream_points") >= kFewestPoints)) continue;
+    streams[run.solver][{run.instance, run.solver_seed}] = TextAt(*run.first, "stream");
+  }
+  for (auto first = streams.begin(); first != streams.end(); ++first) {
+    for (auto second = std::next(first); second != streams.end(); ++second) {
+      int common = 0, equal = 0;
+      for (const auto& [place, stream] : first->second) {
+        const auto other = second->second.find(place);
+        if (other == second->second.end()) continue;
+        ++common;
+        equal += other->second == stream ? 1 : 0;
+      }
+      if (common == 0 || equal < common) continue;
+      results->notes.push_back(results->solvers[first->first] + " and " +
+                               results->solvers[second->first] +
+                               " evaluate at the same points on all " + std::to_string(common) +
+                               " instances: here they are one method");
+    }
+  }
+}
+
+void NoteTargets(BenchResults* results) {
+  for (const BenchTarget& target : results->targets) {
+    if (target.gap == 0.0) continue;
+    int without = 0;
+    for (const BenchInstance& instance : results->instances) {
+      without += std::isnan(TargetEnergy(instance, target, instance.minimum_energy)) ? 1 : 0;
+    }
+    if (without == 0) continue;
+    results->notes.push_back(target.label + ": left out on " + std::to_string(without) + " of " +
+                             std::to_string(results->instances.size()) +
+                             " instances, where no minimum is known, the start is one, or the gap "
+                             "is within the rounding of E");
+  }
+}
+
+}  // namespace
+
+void AddNotes(BenchResults* results) {
+  if (results->num_finished < results->num_cells) {
+    results->notes.push_back(std::to_string(results->num_cells - results->num_finished) + " of " +
+                             std::to_string(results->num_cells) + " cells are not finished");
+  }
+  if (results->overlapped) {
+    results->notes.emplace_back(
+        "cells that ran beside others are left out of everything that is time");
+  }
+  NoteRuns(results);
+  NoteTwins(results);
+  NoteTargets(results);
+}
+
+}  // namespace batten

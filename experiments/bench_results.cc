@@ -1,0 +1,258 @@
+#include "experiments/bench_results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "cost_functions/options.h"
+#include "experiments/basins.h"
+#include "experiments/bench_notes.h"
+#include "experiments/bench_targets.h"
+#include "experiments/comparison.h"
+
+namespace batten {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string InstanceLabel(const nlohmann::json& row) {
+  std::string text = TextAt(row, "problem") + " | " + TextAt(row, "terms");
+  for (const auto& [key, word] : {std::pair{"data_seed", "data"}, {"start_seed", "start"}}) {
+    const double seed = NumberAt(row, key);
+    if (seed > 0.0) text += std::string(" | ") + word + " " + NumberText(seed);
+  }
+  return text;
+}
+
+/// Gathers rows to runs, and runs to instances.
+class Collector {
+ public:
+  explicit Collector(const BenchData& data) : data_(data) {}
+
+  BenchResults Collect() {
+    results_.suite = TextAt(data_.manifest, "suite");
+    results_.num_cells = data_.num_cells;
+    results_.num_finished = data_.rows.size();
+    for (const nlohmann::json& row : data_.rows) AddRow(row);
+    AddTargets();
+    for (std::size_t i = 0; i < results_.instances.size(); ++i) FindMinimum(i);
+    for (BenchRun& run : results_.runs) MeasureCosts(&run);
+    AddNotes(&results_);
+    return std::move(results_);
+  }
+
+ private:
+  std::size_t SolverIndex(const std::string& solver) {
+    auto& all = results_.solvers;
+    const auto found = std::find(all.begin(), all.end(), solver);
+    if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
+    all.push_back(solver);
+    return all.size() - 1;
+  }
+
+  std::size_t InstanceIndex(const nlohmann::json& row) {
+    const std::string label = InstanceLabel(row);
+    const auto [place, is_new] = instance_index_.try_emplace(label, results_.instances.size());
+    if (!is_new) return place->second;
+    BenchInstance instance;
+    instance.label = label;
+    instance.problem = TextAt(row, "problem");
+    instance.terms = TextAt(row, "terms");
+    const auto found = data_.instances.find(TextAt(row, "instance"));
+    const nlohmann::json measured = found == data_.instances.end() ? nullptr : found->second;
+    instance.num_variables = NumberAt(measured, "num_variables");
+    instance.unit_seconds = NumberAt(measured, "evaluation_seconds");
+    instance.minimum_energy = NumberAt(measured, "minimum_energy");
+    instance.truth_energy = NumberAt(measured, "truth_energy");
+    // A truth without noise is a minimum, not a floor.
+    if (!(NumberAt(measured, "noise") > 0.0)) instance.truth_energy = kNan;
+    instance.has_basins = std::isnan(instance.minimum_energy);
+    instance.start_energy = kNan;
+    measured_.push_back(measured);
+    results_.instances.push_back(std::move(instance));
+    return place->second;
+  }
+
+  void AddRow(const nlohmann::json& row) {
+    const std::size_t instance = InstanceIndex(row);
+    const std::size_t solver = SolverIndex(TextAt(row, "solver"));
+    const int seed = static_cast<int>(NumberAt(row, "seed"));
+    const auto [place, is_new] =
+        run_index_.try_emplace({instance, solver, seed}, results_.runs.size());
+    if (is_new) {
+      BenchRun run;
+      run.instance = instance;
+      run.solver = solver;
+      run.solver_seed = seed;
+      run.first = &row;
+      results_.runs.push_back(std::move(run));
+    }
+    BenchRun& run = results_.runs[place->second];
+    run.rows.push_back(&row);
+    const bool ran = std::isfinite(NumberAt(row, "iterations"));
+    run.ran = run.ran || ran;
+    if (ran && std::isnan(results_.instances[instance].start_energy)) {
+      results_.instances[instance].start_energy = NumberAt(row, "start_energy");
+    }
+    if (FlagAt(row, "overlapped")) {
+      results_.overlapped = true;
+    } else if (ran) {
+      run.seconds.push_back(NumberAt(row, "seconds"));
+    }
+    for (const char* key : {"energy", "iterations", "energy_calls", "gradient_calls", "stream"}) {
+      const bool known = row.contains(key) && run.first->contains(key);
+      if (known && row[key] != (*run.first)[key]) run.repetitions_differ = true;
+    }
+  }
+
+  void AddTargets() {
+    for (const double gap : NumbersAt(data_.manifest, "gap_targets")) {
+      results_.targets.push_back({"gap " + NumberText(gap), gap});
+    }
+    const auto& all = results_.instances;
+    if (std::any_of(all.begin(), all.end(), [](const BenchInstance& instance) {
+          return std::isfinite(instance.truth_energy);
+        })) {
+      results_.targets.push_back({"noise floor", 0.0});
+    }
+  }
+
+  /// Basins of the ends on an instance without direct answer.
+  void FindMinimum(std::size_t index) {
+    BenchInstance& instance = results_.instances[index];
+    if (!instance.has_basins) return;
+    const nlohmann::json& measured = measured_[index];
+    const auto basis =
+        BsplineBasis::Make(static_cast<int>(std::max(1.0, NumberAt(measured, "degree"))),
+                           FlagAt(measured, "periodic"), NumbersAt(measured, "knots"), nullptr);
+    std::vector<BasinEnd> ends;
+    std::vector<BenchRun*> runs;
+    for (BenchRun& run : results_.runs) {
+      if (run.instance != index) continue;
+      run.basin = -1;
+      BasinEnd end;
+      if (!basis.has_value() || !ReadEnd(*run.first, basis->num_control_points(), &end)) continue;
+      ends.push_back(std::move(end));
+      runs.push_back(&run);
+    }
+    if (ends.empty()) return;
+    const std::vector<int> basins = FindBasins(*basis, NumberAt(measured, "size"), ends);
+    const int count = *std::max_element(basins.begin(), basins.end()) + 1;
+    instance.basin_energies.assign(static_cast<std::size_t>(count), kInfinity);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      runs[k]->basin = basins[k];
+      double& least = instance.basin_energies[static_cast<std::size_t>(basins[k])];
+      least = std::min(least, ends[k].energy);
+    }
+    instance.minimum_energy = instance.basin_energies[0];
+  }
+
+  static bool ReadEnd(const nlohmann::json& row, int num_control_points, BasinEnd* end) {
+    const std::vector<double> numbers = NumbersAt(row, "polished_control_points");
+    const auto n = static_cast<std::size_t>(num_control_points);
+    if (numbers.empty() || numbers.size() % n != 0) return false;
+    end->energy = NumberAt(row, "polished_energy");
+    end->energy_at_foot_points = NumberAt(row, "polished_energy_at_foot_points");
+    end->polished = FlagAt(row, "polished");
+    end->control_points = Eigen::Map<const Points>(numbers.data(), num_control_points,
+                                                   static_cast<Eigen::Index>(numbers.size() / n));
+    return std::isfinite(end->energy) && std::isfinite(end->energy_at_foot_points);
+  }
+
+  void MeasureCosts(BenchRun* run) {
+    const BenchInstance& instance = results_.instances[run->instance];
+    std::vector<ShortTrace> traces;
+    std::vector<bool> is_timed;
+    for (const nlohmann::json* row : run->rows) {
+      if (!(NumberAt(*row, "trace_rows") > 0.0)) continue;
+      traces.push_back(ReadShortTrace(data_.folder + "/traces/" + TextAt(*row, "key") + ".csv"));
+      is_timed.push_back(!FlagAt(*row, "overlapped"));
+    }
+    const auto& basins = instance.basin_energies;
+    const double own = run->basin >= 0 && !basins.empty()
+                           ? basins[static_cast<std::size_t>(run->basin)]
+                           : instance.minimum_energy;
+    for (const BenchTarget& target : results_.targets) {
+      const auto Costs = [&](double minimum) {
+        return CostsTo(TargetEnergy(instance, target, minimum), traces, is_timed,
+                       instance.unit_seconds);
+      };
+      run->to_target.push_back(Costs(instance.minimum_energy));
+      run->to_own_target.push_back(Costs(own));
+    }
+  }
+
+  const BenchData& data_;
+  BenchResults results_;
+  std::map<std::string, std::size_t> instance_index_;
+  std::map<std::tuple<std::size_t, std::size_t, int>, std::size_t> run_index_;
+  std::vector<nlohmann::json> measured_;  // of each instance
+};
+
+bool HasTarget(const BenchInstance& instance, const BenchTarget& target) {
+  return std::isfinite(TargetEnergy(instance, target, instance.minimum_energy));
+}
+
+}  // namespace
+
+const char* ToString(BenchCost cost) {
+  switch (cost) {
+    case BenchCost::kEvaluations:
+      return "evaluations";
+    case BenchCost::kWorkUnits:
+      return "work_units";
+    case BenchCost::kSeconds:
+      return "seconds";
+  }
+  return "";
+}
+
+BenchResults CollectResults(const BenchData& data) { return Collector(data).Collect(); }
+
+CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cost,
+                  std::vector<std::size_t>* rows_of) {
+  const std::size_t num_solvers = results.solvers.size();
+  std::vector<std::vector<std::vector<double>>> seeds(
+      results.instances.size(), std::vector<std::vector<double>>(num_solvers));
+  for (const BenchRun& run : results.runs) {
+    const double value = run.to_target[target][static_cast<std::size_t>(cost)];
+    seeds[run.instance][run.solver].push_back(std::isnan(value) ? kInfinity : value);
+  }
+  CostTable costs;
+  if (rows_of != nullptr) rows_of->clear();
+  for (std::size_t i = 0; i < results.instances.size(); ++i) {
+    if (!HasTarget(results.instances[i], results.targets[target])) continue;
+    costs.emplace_back();
+    for (const std::vector<double>& values : seeds[i]) {
+      costs.back().push_back(values.empty() ? kInfinity : Median(values));
+    }
+    if (rows_of != nullptr) rows_of->push_back(i);
+  }
+  return costs;
+}
+
+CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost cost,
+                    std::size_t first, std::size_t second) {
+  using Key = std::pair<std::size_t, int>;  // instance, seed
+  std::map<Key, std::array<const BenchRun*, 2>> pairs;
+  for (const BenchRun& run : results.runs) {
+    if (run.solver == first) pairs[{run.instance, run.solver_seed}][0] = &run;
+    if (run.solver == second) pairs[{run.instance, run.solver_seed}][1] = &run;
+  }
+  CostTable costs;
+  for (const auto& [key, pair] : pairs) {
+    if (pair[0] == nullptr || pair[1] == nullptr || pair[0]->basin != pair[1]->basin) continue;
+    if (!HasTarget(results.instances[key.first], results.targets[target])) continue;
+    costs.emplace_back();
+    for (const BenchRun* run : pair) {
+      const double value = run->to_own_target[target][static_cast<std::size_t>(cost)];
+      costs.back().push_back(std::isnan(value) ? kInfinity : value);
+    }
+  }
+  return costs;
+}
+
+}  // namespace batten

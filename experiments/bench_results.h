@@ -1,0 +1,86 @@
+#ifndef BATTEN_EXPERIMENTS_BENCH_RESULTS_H_
+#define BATTEN_EXPERIMENTS_BENCH_RESULTS_H_
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/bench_data.h"
+#include "experiments/bench_profiles.h"
+
+namespace batten {
+
+/// What is counted: calls of E, g, J and products; seconds over those of one evaluation of E on
+/// this problem; the solver's seconds.
+enum class BenchCost { kEvaluations, kWorkUnits, kSeconds };
+inline constexpr std::array<BenchCost, 3> kBenchCosts = {
+    BenchCost::kEvaluations, BenchCost::kWorkUnits, BenchCost::kSeconds};
+const char* ToString(BenchCost cost);
+
+/// What is to be reached: a gap to the minimum, or E of the truth where the data's noise is known.
+struct BenchTarget {
+  std::string label;  // "gap 0.001", "noise floor"
+  double gap = 0.0;   // 0: the noise floor
+};
+
+struct BenchInstance {
+  std::string label;  // "rhino | own | start 2"
+  std::string problem;
+  std::string terms;
+  double num_variables = 0.0;
+  double unit_seconds = 0.0;  // NaN: not known
+  double start_energy = 0.0;
+  double minimum_energy = 0.0;         // E*: the direct answer, or the best basin's
+  bool has_basins = false;             // no direct answer
+  double truth_energy = 0.0;           // NaN: not known
+  std::vector<double> basin_energies;  // in the order of energies at foot points
+};
+
+/// One solver (with one seed) on one instance, over its repetitions.
+struct BenchRun {
+  std::size_t instance = 0;
+  std::size_t solver = 0;
+  int solver_seed = 1;
+  const nlohmann::json* first = nullptr;         // the row of the first repetition that is there
+  std::vector<const nlohmann::json*> rows;       // of all repetitions
+  std::vector<double> seconds;                   // of those that did not overlap others
+  int basin = 0;                                 // 0: the best; -1: not known, or no end
+  bool ran = false;                              // it gave a result
+  bool repetitions_differ = false;               // their ends or counts
+  std::vector<std::array<double, 3>> to_target;  // by target and cost; infinity: not reached
+  /// The same to the minimum of the run's own basin.
+  std::vector<std::array<double, 3>> to_own_target;
+};
+
+struct BenchResults {
+  std::string suite;
+  std::vector<std::string> solvers;
+  std::vector<BenchTarget> targets;
+  std::vector<BenchInstance> instances;
+  std::vector<BenchRun> runs;  // instance by instance
+  std::size_t num_cells = 0, num_finished = 0;
+  bool overlapped = false;  // some times are left out
+  /// One sentence each: failures with their reason, claims that fail, solvers that disagree,
+  /// repetitions that differ, solvers that are one method, targets below the rounding of E.
+  std::vector<std::string> notes;
+  bool some_claim_failed = false;
+  bool some_failed = false;  // crashed, ran out of something, or did not reach what was asked
+};
+
+/// `data` must outlive the result. Reads the traces of the folder.
+BenchResults CollectResults(const BenchData& data);
+
+/// Costs of one target, a row per instance that has it, a column per solver (several seeds of a
+/// solver: their median); infinity where a solver does not reach it or was left out.
+/// `rows_of`, if not null, receives which instance each row is.
+CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cost,
+                  std::vector<std::size_t>* rows_of);
+
+/// Costs of two solvers on instances on which both end in one basin: a fast way to another minimum
+/// is neither won nor lost.
+CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost cost,
+                    std::size_t first, std::size_t second);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_BENCH_RESULTS_H_

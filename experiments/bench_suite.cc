@@ -1,0 +1,224 @@
+#include "experiments/bench_suite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cost_functions/term.h"
+#include "experiments/bench_matrix.h"
+#include "experiments/bench_problem.h"
+#include "problems/strict_json.h"
+
+namespace batten {
+namespace {
+
+constexpr auto kRequired = StrictObject::Presence::kRequired;
+constexpr auto kOptional = StrictObject::Presence::kOptional;
+constexpr double kLongest = 1e9;  // seconds
+constexpr int kLargest = std::numeric_limits<int>::max();
+
+bool ReadProblems(const StrictObject& file, BenchSuite* suite, std::string* error) {
+  std::vector<StrictObject> entries;
+  if (!file.Entries("problems", kRequired, "a list of problems", &entries)) return false;
+  std::set<std::string> labels;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string place = "/problems/" + std::to_string(i);
+    std::vector<BenchProblem> read;
+    if (!ReadBenchProblems(entries[i], suite->path, place, &read, error)) return false;
+    for (BenchProblem& problem : read) {
+      if (!labels.insert(problem.label).second) {
+        return entries[i].Complain(
+            "", "found " + problem.label + " twice; allowed: each problem once, by its name");
+      }
+      suite->problems.push_back(std::move(problem));
+    }
+  }
+  return true;
+}
+
+bool ReadTerms(const StrictObject& file, BenchSuite* suite) {
+  std::vector<std::string> texts = {"own"};
+  if (!file.Texts("terms", kOptional, &texts)) return false;
+  std::set<std::string> labels;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const std::string place = "terms/" + std::to_string(i);
+    BenchTerms terms;
+    std::string why;
+    if (texts[i] != "own" && !ParseNameSpecList(texts[i], &terms.terms, &why)) {
+      return file.Complain(place, why);
+    }
+    for (const NameSpec& term : terms.terms) {
+      // Kinds of parameters have different distances, with like options.
+      NameSpec checked = term;
+      if (checked.name == "distance") checked.name = "interpolation";
+      const Term* found = nullptr;
+      OptionValues options;
+      if (!TermRegistry::Global().Resolve(checked, &found, &options, &why)) {
+        return file.Complain(place, why);
+      }
+      // Labels are cells of tables.
+      terms.label += (terms.label.empty() ? "" : "+") + term.ToString();
+    }
+    if (terms.terms.empty()) terms.label = "own";
+    if (!labels.insert(terms.label).second) {
+      return file.Refuse(place, "each choice of terms once");
+    }
+    suite->terms.push_back(std::move(terms));
+  }
+  return true;
+}
+
+bool ReadExclusions(const StrictObject& file, BenchSuite* suite) {
+  std::vector<StrictObject> entries;
+  if (!file.Entries("exclude", kOptional, "a list of exclusions", &entries)) return false;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    BenchExclusion exclusion;
+    exclusion.place = "/exclude/" + std::to_string(i);
+    if (!entries[i].HasOnly({"problems", "terms", "solvers"}) ||
+        !entries[i].Texts("problems", kOptional, &exclusion.problems) ||
+        !entries[i].Texts("terms", kOptional, &exclusion.terms) ||
+        !entries[i].Texts("solvers", kOptional, &exclusion.solvers)) {
+      return false;
+    }
+    suite->exclusions.push_back(std::move(exclusion));
+  }
+  return true;
+}
+
+bool ReadTargets(const StrictObject& file, BenchSuite* suite) {
+  StrictObject targets;
+  if (!file.Has("targets")) return true;
+  if (!file.Object("targets", kRequired, &targets) || !targets.HasOnly({"gaps"}) ||
+      !targets.Numbers("gaps", kRequired, &suite->gap_targets)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < suite->gap_targets.size(); ++i) {
+    if (suite->gap_targets[i] > 0.0 && suite->gap_targets[i] < 1.0) continue;
+    return targets.Refuse("gaps/" + std::to_string(i), "numbers above 0 and below 1");
+  }
+  std::sort(suite->gap_targets.rbegin(), suite->gap_targets.rend());
+  return true;
+}
+
+bool ReadBudgets(const StrictObject& file, BenchSuite* suite) {
+  StrictObject budgets;
+  if (!file.Has("budgets")) return true;
+  BenchLimits* const limits = &suite->limits;
+  // Below a millisecond no process would even begin.
+  constexpr double kShortest = 1e-3;
+  return file.Object("budgets", kRequired, &budgets) &&
+         budgets.HasOnly({"iterations", "seconds", "cpu_seconds", "wall_seconds", "memory_mb"}) &&
+         budgets.Integer("iterations", kOptional, 0, kLargest, &suite->run.max_iterations) &&
+         budgets.Number("seconds", kOptional, kShortest, kLongest, &suite->run.max_seconds) &&
+         budgets.Number("cpu_seconds", kOptional, kShortest, kLongest, &limits->cpu_seconds) &&
+         budgets.Number("wall_seconds", kOptional, kShortest, kLongest, &limits->wall_seconds) &&
+         budgets.Integer("memory_mb", kOptional, 16, 16'000'000, &limits->memory_mb);
+}
+
+bool ReadRule(const StrictObject& file, BenchSuite* suite) {
+  StrictObject rule;
+  if (!file.Has("rule")) return true;
+  RunSpec* const run = &suite->run;
+  std::string mode = ToString(run->mode);
+  return file.Object("rule", kRequired, &rule) &&
+         rule.HasOnly({"mode", "gradient_tolerance", "native_step", "native_gradient", "threads",
+                       "compile"}) &&
+         rule.Word("mode", kOptional, {"race", "native"}, &mode) && FromString(mode, &run->mode) &&
+         rule.Number("gradient_tolerance", kOptional, 0.0, 1.0, &run->gradient_tolerance) &&
+         rule.Number("native_step", kOptional, 0.0, HUGE_VAL, &run->native_step) &&
+         rule.Number("native_gradient", kOptional, 0.0, HUGE_VAL, &run->native_gradient) &&
+         rule.Integer("threads", kOptional, 1, 1024, &run->threads) &&
+         rule.Flag("compile", kOptional, &run->compile);
+}
+
+bool ReadSeeds(const StrictObject& file, BenchSuite* suite) {
+  StrictObject seeds;
+  if (!file.Has("seeds")) return true;
+  return file.Object("seeds", kRequired, &seeds) && seeds.HasOnly({"data", "start", "solver"}) &&
+         seeds.Integers("data", kOptional, 1, kLargest, &suite->seeds.data) &&
+         seeds.Integers("start", kOptional, 1, kLargest, &suite->seeds.start) &&
+         seeds.Integers("solver", kOptional, 0, kLargest, &suite->seeds.solver);
+}
+
+bool ReadOrder(const StrictObject& file, BenchSuite* suite) {
+  StrictObject order;
+  constexpr int kMostRepetitions = 1000;
+  if (!file.Integer("repetitions", kOptional, 1, kMostRepetitions, &suite->repetitions) ||
+      !file.Integer("warm_up", kOptional, 0, kMostRepetitions, &suite->warm_up)) {
+    return false;
+  }
+  if (!file.Has("order")) return true;
+  return file.Object("order", kRequired, &order) && order.HasOnly({"shuffled", "seed"}) &&
+         order.Flag("shuffled", kOptional, &suite->shuffled) &&
+         order.Integer("seed", kOptional, 0, kLargest, &suite->order_seed);
+}
+
+/// What only making a problem shows: bad data, too few points, terms that do not fit.
+bool TryProblems(const StrictObject& file, const BenchSuite& suite) {
+  for (const BenchProblem& problem : suite.problems) {
+    for (std::size_t t = 0; t < suite.terms.size(); ++t) {
+      CellSeeds seeds;
+      if (UsesDataSeed(problem)) seeds.data = suite.seeds.data.front();
+      if (UsesStartSeed(problem) && !suite.seeds.start.empty()) {
+        seeds.start = suite.seeds.start.front();
+      }
+      std::string why;
+      if (MakeBenchProblem(problem, suite.terms[t], seeds, &why) != nullptr) continue;
+      const std::string with =
+          suite.terms.size() > 1 ? " with terms " + suite.terms[t].label : std::string();
+      return file.Complain(problem.place.substr(1), problem.label + with + ": " + why);
+    }
+  }
+  return true;
+}
+
+/// An exclusion that leaves nothing out is a slip of the pen.
+bool CheckExclusions(const StrictObject& file, const BenchSuite& suite) {
+  for (const BenchExclusion& exclusion : suite.exclusions) {
+    if (CountExcluded(suite, exclusion) > 0) continue;
+    return file.Complain(exclusion.place.substr(1),
+                         "matches nothing; allowed: patterns of problems, terms and solvers that "
+                         "the suite has, as --dry_run shows them without it");
+  }
+  return !BenchMatrix(suite).empty() ||
+         file.Complain("exclude", "leaves nothing to run; allowed: at least one cell");
+}
+
+}  // namespace
+
+bool ReadBenchSuite(const std::string& path, BenchSuite* suite, std::string* error) {
+  nlohmann::json json;
+  if (!ReadJsonFile(path, &json, error)) return false;
+  const StrictObject file(path, "", &json, error);
+  BenchSuite read;
+  read.path = path;
+  std::string format;
+  if (!file.HasOnly({"format", "name", "summary", "problems", "terms", "solvers", "exclude",
+                     "targets", "budgets", "rule", "seeds", "repetitions", "warm_up", "order"}) ||
+      !file.Word("format", kRequired, {"batten.suite/1"}, &format) ||
+      !file.Text("name", kRequired, &read.name) ||
+      !file.Text("summary", kOptional, &read.summary) || !ReadProblems(file, &read, error) ||
+      !ReadTerms(file, &read) || !ReadBenchSolvers(file, &read.solvers) ||
+      !ReadExclusions(file, &read) || !ReadTargets(file, &read) || !ReadBudgets(file, &read) ||
+      !ReadRule(file, &read) || !ReadSeeds(file, &read) || !ReadOrder(file, &read) ||
+      !TryProblems(file, read) || !CheckExclusions(file, read)) {
+    return false;
+  }
+  *suite = std::move(read);
+  return true;
+}
+
+bool MatchesPattern(const std::string& pattern, const std::string& text) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string::npos) return pattern == text;
+  if (text.compare(0, star, pattern, 0, star) != 0) return false;
+  const std::string rest = pattern.substr(star + 1);
+  for (std::size_t begin = star; begin <= text.size(); ++begin) {
+    if (MatchesPattern(rest, text.substr(begin))) return true;
+  }
+  return false;
+}
+
+}  // namespace batten

@@ -1,0 +1,202 @@
+#include "experiments/bench_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cost_functions/options.h"
+#include "experiments/comparison.h"
+#include "experiments/table_text.h"
+
+namespace batten {
+namespace {
+
+constexpr double kCharge = 10.0;
+
+/// Empty where there is no finite number.
+std::string Cell(double value) { return std::isfinite(value) ? NumberText(value) : ""; }
+
+std::string WithoutCommas(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](unsigned char c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; }, ';');
+  return text;
+}
+
+double SumOfCalls(const nlohmann::json& row) {
+  double sum = 0.0;
+  for (const char* key : {"energy_calls", "gradient_calls", "jacobian_calls", "products"}) {
+    sum += NumberAt(row, key);
+  }
+  return sum;
+}
+
+std::string Verified(const nlohmann::json& row) {
+  const auto found = row.find("verified");
+  if (found == row.end() || !found->is_boolean()) return "-";
+  return found->get<bool>() ? "yes" : "NO";
+}
+
+std::string FlagsText(const nlohmann::json& row) {
+  std::string text;
+  for (const std::string& flag : TextsAt(row, "findings")) text += (text.empty() ? "" : " ") + flag;
+  return text;
+}
+
+/// The seed of the bootstrap, so that a table is made again to the last digit.
+constexpr std::uint64_t kBootstrapSeed = 1;
+
+double Shift(BenchCost cost) { return cost == BenchCost::kSeconds ? 1e-3 : 10.0; }
+
+double ChargedMean(const CostTable& costs, std::size_t solver, double shift) {
+  std::vector<double> charged;
+  for (const std::vector<double>& row : ChargeFailures(costs, kCharge)) {
+    charged.push_back(row[solver]);
+  }
+  return ShiftedGeometricMean(charged, shift);
+}
+
+int CountSolved(const CostTable& costs, std::size_t solver) {
+  return static_cast<int>(std::count_if(
+      costs.begin(), costs.end(),
+      [solver](const std::vector<double>& row) { return std::isfinite(row[solver]); }));
+}
+
+int CountBestBasin(const BenchResults& results, std::size_t solver, int* of) {
+  int best = 0;
+  *of = 0;
+  for (const BenchRun& run : results.runs) {
+    if (run.solver != solver || !results.instances[run.instance].has_basins) continue;
+    ++*of;
+    best += run.ran && run.basin == 0 ? 1 : 0;
+  }
+  return best;
+}
+
+bool Write(const CsvTable& table, const std::string& stem, const std::string& caption,
+           FileBatch* batch, std::string* error) {
+  return batch->Write(stem + ".csv", table.ToCsv(), error) != nullptr &&
+         batch->Write(stem + ".md", TableMarkdown(table), error) != nullptr &&
+         batch->Write(stem + ".tex", TableLatex(table, caption), error) != nullptr;
+}
+
+}  // namespace
+
+CsvTable RunTable(const BenchResults& results) {
+  CsvTable table({"problem",      "terms",     "data_seed",     "start_seed", "solver",
+                  "seed",         "stop",      "verified",      "iterations", "evaluations",
+                  "energy",       "gap",       "gradient_norm", "basin",      "rms_orthogonal",
+                  "findings",        "message",   "repetitions",   "seconds",    "seconds_low",
+                  "seconds_high", "work_units"});
+  for (const BenchRun& run : results.runs) {
+    const nlohmann::json& row = *run.first;
+    const BenchInstance& instance = results.instances[run.instance];
+    const MedianWithInterval seconds = BootstrapMedian(run.seconds, kBootstrapSeed);
+    const double energy = NumberAt(row, "energy");
+    const double fall = instance.start_energy - instance.minimum_energy;
+    const double gap =
+        instance.has_basins ? (energy - instance.minimum_energy) / fall : NumberAt(row, "gap");
+    const bool knows_basin = instance.has_basins && run.basin >= 0;
+    table.AddRow({WithoutCommas(instance.problem),
+                  WithoutCommas(instance.terms),
+                  Cell(NumberAt(row, "data_seed")),
+                  Cell(NumberAt(row, "start_seed")),
+                  WithoutCommas(results.solvers[run.solver]),
+                  std::to_string(run.solver_seed),
+                  WithoutCommas(TextAt(row, "stop")),
+                  Verified(row),
+                  Cell(NumberAt(row, "iterations")),
+                  Cell(SumOfCalls(row)),
+                  Cell(energy),
+                  Cell(gap),
+                  Cell(NumberAt(row, "gradient_norm")),
+                  knows_basin ? std::to_string(run.basin + 1) : "",
+                  Cell(NumberAt(row, "rms_orthogonal")),
+                  FlagsText(row),
+                  WithoutCommas(TextAt(row, "message")),
+                  std::to_string(run.rows.size()),
+                  Cell(seconds.median),
+                  Cell(seconds.low),
+                  Cell(seconds.high),
+                  Cell(seconds.median / instance.unit_seconds)});
+  }
+  return table;
+}
+
+CsvTable SolverTable(const BenchResults& results) {
+  CsvTable table({"target", "solver", "instances", "solved", "best_basin", "of_basins",
+                  "evaluations", "work_units", "seconds"});
+  for (std::size_t t = 0; t < results.targets.size(); ++t) {
+    const CostTable counts = CostsOf(results, t, BenchCost::kEvaluations, nullptr);
+    for (std::size_t s = 0; s < results.solvers.size(); ++s) {
+      int of_basins = 0;
+      const int best = CountBestBasin(results, s, &of_basins);
+      std::vector<std::string> cells = {results.targets[t].label,
+                                        WithoutCommas(results.solvers[s]),
+                                        std::to_string(counts.size()),
+                                        std::to_string(CountSolved(counts, s)),
+                                        of_basins > 0 ? std::to_string(best) : "",
+                                        of_basins > 0 ? std::to_string(of_basins) : ""};
+      for (const BenchCost cost : kBenchCosts) {
+        cells.push_back(Cell(ChargedMean(CostsOf(results, t, cost, nullptr), s, Shift(cost))));
+      }
+      table.AddRow(std::move(cells));
+    }
+  }
+  return table;
+}
+
+CsvTable PairTable(const BenchResults& results) {
+  CsvTable table({"target", "cost", "first", "second", "instances", "first_less", "equal",
+                  "second_less", "neither", "first_at_1", "second_at_1", "first_at_2",
+                  "second_at_2", "first_at_10", "second_at_10"});
+  for (std::size_t t = 0; t < results.targets.size(); ++t) {
+    for (const BenchCost cost : kBenchCosts) {
+      for (std::size_t a = 0; a < results.solvers.size(); ++a) {
+        for (std::size_t b = a + 1; b < results.solvers.size(); ++b) {
+          const CostTable costs = PairCosts(results, t, cost, a, b);
+          if (costs.empty()) continue;
+          int less = 0, equal = 0, more = 0, neither = 0;
+          for (const std::vector<double>& pair : costs) {
+            const bool none = !std::isfinite(pair[0]) && !std::isfinite(pair[1]);
+            ++(none ? neither : pair[0] < pair[1] ? less : pair[0] > pair[1] ? more : equal);
+          }
+          const std::vector<Steps> profiles = PairProfiles(costs, 0, 1);
+          std::vector<std::string> cells = {results.targets[t].label,
+                                            ToString(cost),
+                                            WithoutCommas(results.solvers[a]),
+                                            WithoutCommas(results.solvers[b]),
+                                            std::to_string(costs.size()),
+                                            std::to_string(less),
+                                            std::to_string(equal),
+                                            std::to_string(more),
+                                            std::to_string(neither)};
+          for (const double ratio : {1.0, 2.0, 10.0}) {
+            for (const Steps& profile : profiles) cells.push_back(NumberText(profile.At(ratio)));
+          }
+          table.AddRow(std::move(cells));
+        }
+      }
+    }
+  }
+  return table;
+}
+
+bool WriteBenchTables(const BenchResults& results, const std::string& folder, FileBatch* batch,
+                      std::string* error) {
+  std::string notes = "# " + MarkdownText(results.suite) + "\n\n" +
+                      std::to_string(results.num_finished) + " of " +
+                      std::to_string(results.num_cells) +
+                      " cells are finished. A solver that does not reach a target, or does not "
+                      "apply, is charged 10 times the largest cost of its instance in the means of "
+                      "solvers.md; instances on "
+                      "which nobody reaches it are left out of them.\n\n";
+  for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
+  return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&
+         Write(SolverTable(results), folder + "/solvers", results.suite + ": by target and solver",
+               batch, error) &&
+         Write(PairTable(results), folder + "/pairs", results.suite + ": pairs of solvers", batch,
+               error) &&
+         batch->Write(folder + "/notes.md", notes, error) != nullptr;
+}
+
+}  // namespace batten

@@ -1,0 +1,38 @@
+#ifndef BATTEN_EXPERIMENTS_BENCH_TABLES_H_
+#define BATTEN_EXPERIMENTS_BENCH_TABLES_H_
+
+#include <string>
+#include <vector>
+
+#include "experiments/atomic_file.h"
+#include "experiments/bench_results.h"
+#include "experiments/csv_table.h"
+#include "experiments/gnuplot.h"
+
+namespace batten {
+
+// Columns that begin with `seconds` or `work_units` are times; all others are the same in every
+// run.
+
+/// A row per instance, solver and seed: what came of it.
+CsvTable RunTable(const BenchResults& results);
+/// A row per target and solver: instances solved, how often the best basin was found, shifted
+/// geometric means of each cost (shift 10; of seconds 1 ms) with failures charged 10 times the
+/// largest cost of their instance.
+CsvTable SolverTable(const BenchResults& results);
+/// A row per target, cost and pair of solvers: on how many instances both end in one basin, who
+/// needs less how often, and both profiles at the ratios 1, 2 and 10.
+CsvTable PairTable(const BenchResults& results);
+
+/// Adds table, solvers and pairs (.csv, .md, .tex) and notes.md to `batch`.
+bool WriteBenchTables(const BenchResults& results, const std::string& folder, FileBatch* batch,
+                      std::string* error);
+
+/// Performance profiles, data profiles and runtime distributions by each cost, and of every pair
+/// where there are at most four solvers. Those of time are not drawn where all cells overlapped.
+std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const std::string& folder,
+                                           FileBatch* batch);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_BENCH_TABLES_H_

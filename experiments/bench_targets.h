@@ -1,0 +1,34 @@
+#ifndef BATTEN_EXPERIMENTS_BENCH_TARGETS_H_
+#define BATTEN_EXPERIMENTS_BENCH_TARGETS_H_
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/bench_results.h"
+
+namespace batten {
+
+/// The columns of a trace that targets need.
+struct ShortTrace {
+  std::vector<double> evaluations;  // calls of E, g, J and products so far
+  std::vector<double> seconds;
+  std::vector<double> energies;
+};
+/// Empty where the file cannot be read.
+ShortTrace ReadShortTrace(const std::string& path);
+
+/// E that is to be reached; NaN where the target means nothing: no E* known, a start that is the
+/// minimum, a gap that is rounding of E.
+double TargetEnergy(const BenchInstance& instance, const BenchTarget& target,
+                    double minimum_energy);
+
+/// Costs of a run up to the first row of its trace with E at most `energy`: evaluations of the
+/// first trace, times the median over all; infinity where it is not reached. Evaluations count from
+/// 1, so that ratios can be formed. NaN: times that are not known.
+std::array<double, 3> CostsTo(double energy, const std::vector<ShortTrace>& traces,
+                              const std::vector<bool>& is_timed, double unit_seconds);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_BENCH_TARGETS_H_

@@ -1,0 +1,223 @@
+#include "experiments/regression.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "cost_functions/options.h"
+#include "experiments/comparison.h"
+#include "experiments/short_number.h"
+#include "experiments/signed_rank.h"
+#include "solvers/run_context.h"
+
+namespace batten {
+namespace {
+
+using RunKey = std::array<std::string, 3>;  // instance, solver, seed
+
+struct Pair {
+  const BenchRun* before = nullptr;
+  const BenchRun* now = nullptr;
+};
+
+std::string NameOf(const RunKey& key) { return key[0] + ": " + key[1]; }
+
+std::map<RunKey, const BenchRun*> ByName(const BenchResults& results) {
+  std::map<RunKey, const BenchRun*> runs;
+  for (const BenchRun& run : results.runs) {
+    runs[{results.instances[run.instance].label, results.solvers[run.solver],
+          std::to_string(run.solver_seed)}] = &run;
+  }
+  return runs;
+}
+
+bool Reached(const BenchRun& run) {
+  StopReason reason = StopReason::kNotRun;
+  const std::vector<std::string> flags = TextsAt(*run.first, "flags");
+  const bool belied = std::count(flags.begin(), flags.end(), "claim_fails") > 0;
+  return FromString(TextAt(*run.first, "stop"), &reason) && IsSuccess(reason) && !belied;
+}
+
+double Evaluations(const BenchRun& run) {
+  double sum = 0.0;
+  for (const char* key : {"energy_calls", "gradient_calls", "jacobian_calls", "products"}) {
+    sum += NumberAt(*run.first, key);
+  }
+  return sum;
+}
+
+double CostOf(const BenchRun& run, bool of_time) {
+  return of_time ? Median(run.seconds) : Evaluations(run);
+}
+
+class Finder {
+ public:
+  Finder(const RegressionRule& rule, RegressionReport* report) : rule_(rule), report_(report) {
+    report_->tests = CsvTable(
+        {"solver", "cost", "cells", "median_ratio", "rank_sum", "p", "p_corrected", "worse"});
+  }
+
+  void Match(const BenchResults& before, const BenchResults& now) {
+    const auto old_runs = ByName(before);
+    const auto new_runs = ByName(now);
+    int only_before = 0, only_now = static_cast<int>(new_runs.size());
+    for (const auto& [key, run] : old_runs) {
+      const auto found = new_runs.find(key);
+      if (found == new_runs.end()) {
+        ++only_before;
+        continue;
+      }
+      --only_now;
+      pairs_[key] = {run, found->second};
+    }
+    report_->matched = static_cast<int>(pairs_.size());
+    if (only_before > 0) {
+      report_->differences.push_back(std::to_string(only_before) + " runs are in the first only");
+    }
+    if (only_now > 0) {
+      report_->differences.push_back(std::to_string(only_now) + " runs are in the second only");
+    }
+  }
+
+  void CompareEnds() {
+    for (const auto& [key, pair] : pairs_) {
+      const bool reached = Reached(*pair.before), reaches = Reached(*pair.now);
+      const std::string stops = TextAt(*pair.before->first, "stop") + " before, " +
+                                TextAt(*pair.now->first, "stop") + " now";
+      if (reached && !reaches) {
+        const std::string why = TextAt(*pair.now->first, "message");
+        report_->regressions.push_back(NameOf(key) + ": " + stops +
+                                       (why.empty() ? "" : " (" + why + ")"));
+        continue;
+      }
+      if (!reached && reaches) report_->differences.push_back(NameOf(key) + ": " + stops);
+      CompareEnergies(key, pair);
+    }
+  }
+
+  void CompareCosts() {
+    struct Test {
+      std::string solver;
+      bool of_time = false;
+      SignedRank rank;
+      double ratio = 1.0;
+    };
+    std::vector<Test> tests;
+    std::vector<std::string> solvers = {"all"};
+    for (const auto& [key, pair] : pairs_) {
+      if (std::find(solvers.begin(), solvers.end(), key[1]) == solvers.end()) {
+        solvers.push_back(key[1]);
+      }
+    }
+    for (const bool of_time : {false, true}) {
+      for (const std::string& solver : solvers) {
+        const std::vector<double> logs = LogRatios(solver, of_time);
+        if (logs.empty()) continue;
+        tests.push_back({solver, of_time, TestSignedRank(logs), std::exp(Median(logs))});
+      }
+    }
+    std::vector<double> p_values;
+    for (const Test& test : tests) p_values.push_back(test.rank.p_greater);
+    const std::vector<double> corrected = HolmCorrected(p_values);
+    for (std::size_t k = 0; k < tests.size(); ++k) {
+      const Test& test = tests[k];
+      const char* const cost = test.of_time ? "seconds" : "evaluations";
+      const bool worse = corrected[k] < rule_.significance && test.ratio > 1.0 + rule_.slowdown;
+      report_->tests.AddRow({Cleaned(test.solver), cost, std::to_string(test.rank.count),
+                             NumberText(test.ratio), NumberText(test.rank.positive_sum),
+                             NumberText(test.rank.p_greater), NumberText(corrected[k]),
+                             worse ? "yes" : "no"});
+      if (!worse) continue;
+      report_->regressions.push_back((test.solver == "all" ? "all solvers" : test.solver) +
+                                     " need " + ShortNumber(test.ratio, 3) + " times the " + cost +
+                                     " (median of " + std::to_string(test.rank.count) +
+                                     " cells that differ; p = " + ShortNumber(corrected[k], 2) +
+                                     ")");
+    }
+  }
+
+ private:
+  static std::string Cleaned(std::string text) {
+    std::replace(text.begin(), text.end(), ',', ';');
+    return text;
+  }
+
+  void CompareEnergies(const RunKey& key, const Pair& pair) {
+    const double before = NumberAt(*pair.before->first, "energy");
+    const double now = NumberAt(*pair.now->first, "energy");
+    const double start = NumberAt(*pair.before->first, "start_energy");
+    // Ends at E = 0 are rounding of the start's.
+    constexpr double kZero = 1e-12;
+    const double allowed = rule_.energy_rounding * std::abs(before) + kZero * std::abs(start);
+    if (!std::isfinite(before) || !std::isfinite(now) || std::abs(now - before) <= allowed) return;
+    const std::string sentence = NameOf(key) + ": ends at E = " + ShortNumber(now, 7) +
+                                 ", before at " + ShortNumber(before, 7);
+    (now > before ? report_->regressions : report_->differences).push_back(sentence);
+  }
+
+  /// Logarithms of now over before, of runs that reach what is asked both times.
+  std::vector<double> LogRatios(const std::string& solver, bool of_time) const {
+    std::vector<double> logs;
+    for (const auto& [key, pair] : pairs_) {
+      if (solver != "all" && key[1] != solver) continue;
+      if (!Reached(*pair.before) || !Reached(*pair.now)) continue;
+      const double ratio = CostOf(*pair.now, of_time) / CostOf(*pair.before, of_time);
+      if (std::isfinite(ratio) && ratio > 0.0) logs.push_back(std::log(ratio));
+    }
+    return logs;
+  }
+
+  const RegressionRule& rule_;
+  RegressionReport* report_;
+  std::map<RunKey, Pair> pairs_;
+};
+
+void CompareBuilds(const BenchData& before, const BenchData& now, RegressionReport* report) {
+  for (const char* key : {"suite_hash", "version", "commit", "compiler", "flags"}) {
+    const std::string old_text = TextAt(before.manifest, key);
+    const std::string new_text = TextAt(now.manifest, key);
+    if (old_text == new_text) continue;
+    report->differences.push_back(std::string(key) + ": " + old_text + " before, " + new_text +
+                                  " now");
+  }
+  const auto Processor = [](const BenchData& data) {
+    const auto found = data.manifest.find("sessions");
+    const bool has_any = found != data.manifest.end() && found->is_array() && !found->empty();
+    return has_any ? TextAt(found->back(), "processor") : std::string("unknown");
+  };
+  if (Processor(before) == Processor(now)) return;
+  report->differences.push_back("processor: " + Processor(before) + " before, " + Processor(now) +
+                                " now: their seconds tell nothing about the program");
+}
+
+}  // namespace
+
+RegressionReport FindRegressions(const BenchData& before_data, const BenchResults& before,
+                                 const BenchData& now_data, const BenchResults& now,
+                                 const RegressionRule& rule) {
+  RegressionReport report;
+  CompareBuilds(before_data, now_data, &report);
+  Finder finder(rule, &report);
+  finder.Match(before, now);
+  finder.CompareEnds();
+  finder.CompareCosts();
+  return report;
+}
+
+std::vector<double> HolmCorrected(const std::vector<double>& p_values) {
+  std::vector<std::size_t> order(p_values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&p_values](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
+  std::vector<double> corrected(p_values.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const auto left = static_cast<double>(order.size() - k);
+    largest = std::max(largest, std::min(1.0, left * p_values[order[k]]));
+    corrected[order[k]] = largest;
+  }
+  return corrected;
+}
+
+}  // namespace batten

@@ -1,0 +1,332 @@
+// `bench`, `merge` and `regress` as processes: bad suites, killed runs, a full disk, parts.
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <random>
+#include <set>
+
+#include "tests/tools/program.h"
+
+namespace batten {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+json GoodSuite() {
+  return {{"format", "batten.suite/1"},
+          {"name", "good"},
+          {"problems",
+           {{{"synthetic", "star"}, {"name", "star"}, {"points", 60}, {"control_points", {8, 12}}},
+            {{"synthetic", "wave"}, {"name", "wave"}, {"points", 40}, {"control_points", 9}}}},
+          {"solvers",
+           {"banded_cholesky",
+            "cg",
+            {{"solver", "lbfgs"}, {"options", {{"memory", {3, 10}}}}},
+            "lspia"}},
+          {"budgets", {{"seconds", 20}, {"iterations", 200}}},
+          {"warm_up", 0},
+          {"repetitions", 4}};
+}
+
+class Bench : public ::testing::Test {
+ protected:
+  std::string Suite(const json& suite) const { return folder_.Write("suite.json", suite.dump()); }
+  std::vector<std::string> Arguments(const std::string& suite, const std::string& out) const {
+    return {"bench", suite, "--out=" + (folder_ / out), "--nofigures", "--quiet"};
+  }
+  Ended RunIn(const std::string& suite, const std::string& out,
+              const std::string& flag = "") const {
+    std::vector<std::string> arguments = Arguments(suite, out);
+    if (!flag.empty()) arguments.push_back(flag);
+    return RunBatten(arguments);
+  }
+  /// The table without the columns of time, which stand last.
+  std::vector<std::string> TimelessTable(const std::string& out) const {
+    std::vector<std::string> lines = Lines(ReadFile(folder_ / (out + "/table.csv")));
+    constexpr int kTimes = 4;
+    EXPECT_THAT(lines.at(0), ::testing::EndsWith(",seconds,seconds_low,seconds_high,work_units"));
+    for (std::string& line : lines) {
+      for (int k = 0; k < kTimes; ++k) line.resize(line.rfind(','));
+    }
+    return lines;
+  }
+  /// Keys of the rows, each of which is whole.
+  std::multiset<std::string> Keys(const std::string& out) const {
+    std::multiset<std::string> keys;
+    for (const std::string& line : Lines(ReadFile(folder_ / (out + "/cells.jsonl")))) {
+      keys.insert(json::parse(line)["key"].get<std::string>());
+    }
+    return keys;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Bench, DryRunPrintsTheMatrixAndWritesNothing) {
+  const Ended ended = RunBatten({"bench", Suite(GoodSuite()), "--dry_run"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const std::vector<std::string> lines = Lines(ended.out);
+  // 3 problems x 5 solvers x 4 repetitions, and the total.
+  ASSERT_EQ(lines.size(), 61u);
+  EXPECT_EQ(lines.back(), "60 cells: 3 instances, 5 solvers, 4 repetitions");
+  EXPECT_THAT(lines, ::testing::Contains(
+                         "star/control_points=12 | own | lbfgs/memory=3 | seed 1 | repetition 2"));
+  EXPECT_EQ(RunBatten({"bench", Suite(GoodSuite()), "--dry_run"}).out, ended.out);
+  EXPECT_EQ(folder_.Names(), std::vector<std::string>{"suite.json"});
+}
+
+TEST_F(Bench, KilledAtRandomTimesEndsWithTheSameTable) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "undisturbed").status, 0);
+  std::mt19937 random(20261128);
+  constexpr int kKills = 8;
+  int killed = 0;
+  for (int k = 0; k < kKills; ++k) {
+    Program program(Arguments(suite, "killed"));
+    constexpr int kLongest = 150'000;  // microseconds
+    usleep(10'000 + random() % kLongest);
+    program.Send(SIGKILL);
+    killed += program.Wait().signal == SIGKILL ? 1 : 0;
+  }
+  EXPECT_GT(killed, 0);
+  const Ended ended = RunIn(suite, "killed");
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(TimelessTable("killed"), TimelessTable("undisturbed"));
+  EXPECT_EQ(Keys("killed"), Keys("undisturbed"));
+  const auto keys = Keys("killed");
+  EXPECT_EQ(keys.size(), 60u);
+  EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()).size(), 60u);
+}
+
+TEST_F(Bench, CutsATornLastLine) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "out").status, 0);
+  const auto table = TimelessTable("out");
+  const std::string cells = folder_ / "out/cells.jsonl";
+  std::filesystem::resize_file(cells, std::filesystem::file_size(cells) - 10);
+  const Ended ended = RunIn(suite, "out");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(Keys("out").size(), 60u);
+  EXPECT_EQ(TimelessTable("out"), table);
+}
+
+TEST_F(Bench, OnAFullDiskLosesNothingThatIsFinished) {
+  const std::string suite = Suite(GoodSuite());
+  Program::Streams streams;
+  streams.file_size = 40'000;  // of cells.jsonl some 20 rows
+  const Ended full = Program(Arguments(suite, "out"), streams).Wait();
+  EXPECT_EQ(full.status, 2);
+  EXPECT_EQ(Lines(full.err).size(), 1u) << full.err;
+  EXPECT_THAT(full.err, HasSubstr("cannot write"));
+  const auto kept = Keys("out");
+  EXPECT_GT(kept.size(), 5u);
+  EXPECT_LT(kept.size(), 60u);
+  const std::string before = ReadFile(folder_ / "out/cells.jsonl");
+  ASSERT_EQ(RunIn(suite, "out").status, 0);
+  EXPECT_EQ(ReadFile(folder_ / "out/cells.jsonl").substr(0, before.size()), before);
+  EXPECT_EQ(Keys("out").size(), 60u);
+}
+
+TEST_F(Bench, PartsMergeToTheWhole) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "whole").status, 0);
+  for (const char* part : {"1", "2"}) {
+    const std::string out = std::string("part_") + part;
+    ASSERT_EQ(RunIn(suite, out, std::string("--shard=") + part + "/2").status, 0);
+  }
+  for (int twice = 0; twice < 2; ++twice) {
+    const Ended merged = RunBatten(
+        {"merge", folder_ / "merged", folder_ / "part_1", folder_ / "part_2", "--nofigures"});
+    ASSERT_EQ(merged.status, 0) << merged.err;
+    EXPECT_THAT(merged.out, HasSubstr("60 cells, 0 missing"));
+    EXPECT_EQ(TimelessTable("merged"), TimelessTable("whole"));
+    EXPECT_EQ(Keys("merged"), Keys("whole"));
+  }
+}
+
+TEST_F(Bench, MergeRefusesAnotherSuite) {
+  json other = GoodSuite();
+  other["problems"].erase(0);
+  ASSERT_EQ(RunIn(Suite(GoodSuite()), "one").status, 0);
+  ASSERT_EQ(RunIn(Suite(other), "two").status, 0);
+  ExpectRefused(RunBatten({"merge", folder_ / "out", folder_ / "one", folder_ / "two"}),
+                {"another suite"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(Bench, MoreJobsAreMarkedAndLeftOutOfTime) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "alone").status, 0);
+  ASSERT_EQ(RunIn(suite, "out", "--jobs=2").status, 0);
+  for (const std::string& line : Lines(ReadFile(folder_ / "out/cells.jsonl"))) {
+    EXPECT_EQ(json::parse(line)["overlapped"], true);
+  }
+  EXPECT_EQ(TimelessTable("out"), TimelessTable("alone"));
+  for (const std::string& line : Lines(ReadFile(folder_ / "out/table.csv"))) {
+    if (line.rfind("problem", 0) == 0) continue;
+    EXPECT_THAT(line, ::testing::EndsWith(",,,,"));
+  }
+}
+
+TEST_F(Bench, RegressFindsAWorseResult) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "before").status, 0);
+  std::filesystem::copy(folder_ / "before", folder_ / "now",
+                        std::filesystem::copy_options::recursive);
+  const Ended same = RunBatten({"regress", folder_ / "before", folder_ / "now"});
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_THAT(same.out, HasSubstr("15 runs in both"));
+  std::string edited;
+  for (const std::string& line : Lines(ReadFile(folder_ / "now/cells.jsonl"))) {
+    json row = json::parse(line);
+    if (row["solver"] == "cg" && row["problem"] == "wave") row["stop"] = "diverged";
+    edited += row.dump() + "\n";
+  }
+  folder_.Write("now/cells.jsonl", edited);
+  const Ended worse = RunBatten({"regress", folder_ / "before", folder_ / "now"});
+  EXPECT_EQ(worse.status, 4);
+  EXPECT_THAT(worse.err, HasSubstr("wave | own: cg: gradient_small before, diverged now"));
+}
+
+TEST_F(Bench, RegressTestsTimesOfAllCells) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "before").status, 0);
+  std::filesystem::copy(folder_ / "before", folder_ / "now",
+                        std::filesystem::copy_options::recursive);
+  std::string edited;
+  for (const std::string& line : Lines(ReadFile(folder_ / "now/cells.jsonl"))) {
+    json row = json::parse(line);
+    row["seconds"] = 1.2 * row["seconds"].get<double>();
+    edited += row.dump() + "\n";
+  }
+  folder_.Write("now/cells.jsonl", edited);
+  const Ended slower = RunBatten({"regress", folder_ / "before", folder_ / "now"});
+  EXPECT_EQ(slower.status, 4) << slower.out;
+  EXPECT_THAT(slower.err, HasSubstr("all solvers need 1.20 times the seconds"));
+  EXPECT_EQ(RunBatten({"regress", folder_ / "before", folder_ / "now", "--slowdown=0.5"}).status,
+            0);
+}
+
+struct BadSuite {
+  const char* name;
+  std::function<void(json*)> spoil;
+  std::vector<std::string> parts;  // of the message
+};
+void PrintTo(const BadSuite& bad, std::ostream* stream) { *stream << bad.name; }
+
+class BadSuites : public Bench, public ::testing::WithParamInterface<BadSuite> {};
+
+TEST_P(BadSuites, GetOneLineWithThePath) {
+  json suite = GoodSuite();
+  GetParam().spoil(&suite);
+  std::vector<std::string> parts = GetParam().parts;
+  parts.push_back("suite.json: /");
+  ExpectRefused(RunBatten({"bench", Suite(suite), "--out=" + (folder_ / "out")}), parts);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    BenchCommand, BadSuites,
+    ::testing::Values(
+        BadSuite{"UnknownKey",
+                 [](json* s) { (*s)["repetition"] = 3; },
+                 {"unknown key", "did you mean repetitions?"}},
+        BadSuite{"NoFormat", [](json* s) { s->erase("format"); }, {"/format: found nothing"}},
+        BadSuite{"WrongType",
+                 [](json* s) { (*s)["repetitions"] = "five"; },
+                 {"/repetitions: found \"five\"; allowed: 1 to 1000"}},
+        BadSuite{"NoProblems",
+                 [](json* s) { (*s)["problems"] = json::array(); },
+                 {"/problems: found an empty list"}},
+        BadSuite{"ProblemUnknown",
+                 [](json* s) { (*s)["problems"][0] = "rihno"; },
+                 {"/problems/0", "did you mean rhino?"}},
+        BadSuite{"ProblemKey",
+                 [](json* s) { (*s)["problems"][0]["point"] = 3; },
+                 {"/problems/0", "did you mean points?"}},
+        BadSuite{
+            "MissingFile",
+            [](json* s) {
+              (*s)["problems"][0] = {{"data", "no/such.csv"}, {"name", "x"}, {"control_points", 9}};
+            },
+            {"/problems/0/data: found \"no/such.csv\"; allowed: a file in"}},
+        BadSuite{"EmptyGrid",
+                 [](json* s) { (*s)["problems"][0]["control_points"] = json::array(); },
+                 {"/problems/0/control_points: found an empty list"}},
+        BadSuite{"GridValue",
+                 [](json* s) {
+                   (*s)["problems"][0]["control_points"] = {8, -3};
+                 },
+                 {"/problems/0/control_points/1: found -3"}},
+        BadSuite{"TooFewControlPoints",
+                 [](json* s) { (*s)["problems"][1]["control_points"] = 2; },
+                 {"/problems/1/control_points: found 2; allowed: more than the degree, 3"}},
+        BadSuite{"SolverUnknown",
+                 [](json* s) { (*s)["solvers"][1] = "gc"; },
+                 {"/solvers/1", "did you mean cg?"}},
+        BadSuite{"SolverOption",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memry", {3}}};
+                 },
+                 {"/solvers/2/options/memry", "memory"}},
+        BadSuite{"SolverOptionRange",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memory", {3, 0}}};
+                 },
+                 {"/solvers/2/options/memory"}},
+        BadSuite{"EmptyOptionGrid",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memory", json::array()}};
+                 },
+                 {"/solvers/2/options/memory: found an empty list"}},
+        BadSuite{"SolverTwice",
+                 [](json* s) { (*s)["solvers"][0] = "lbfgs"; },
+                 {"/solvers/2: found lbfgs/memory=10 twice"}},
+        BadSuite{"Term",
+                 [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
+                 {"/terms/0", "did you mean fairing?"}},
+        BadSuite{"NegativeBudget",
+                 [](json* s) { (*s)["budgets"]["seconds"] = -1; },
+                 {"/budgets/seconds: found -1; allowed: 0.001 to"}},
+        BadSuite{"BudgetKey",
+                 [](json* s) {
+                   (*s)["budgets"] = {{"second", 1}};
+                 },
+                 {"/budgets", "did you mean seconds?"}},
+        BadSuite{"Target",
+                 [](json* s) {
+                   (*s)["targets"] = {{"gaps", {0.1, 2}}};
+                 },
+                 {"/targets/gaps/1: found 2"}},
+        BadSuite{"Seeds",
+                 [](json* s) {
+                   (*s)["seeds"] = {{"start", {1, 1.5}}};
+                 },
+                 {"/seeds/start/1: found 1.5"}},
+        BadSuite{"ExclusionOfNothing",
+                 [](json* s) {
+                   (*s)["exclude"] = {{{"solvers", {"gim*"}}}};
+                 },
+                 {"/exclude/0: matches nothing"}},
+        BadSuite{"ExclusionOfAll",
+                 [](json* s) {
+                   (*s)["exclude"] = {{{"solvers", {"*"}}}};
+                 },
+                 {"/exclude: leaves nothing to run"}}),
+    [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST_F(Bench, RefusesBadFlags) {
+  const std::string suite = Suite(GoodSuite());
+  ExpectRefused(RunBatten({"bench", suite}), {"--out"});
+  ExpectRefused(RunBatten({"bench"}), {"one suite"});
+  for (const char* shard : {"0/2", "3/2", "1", "a/b", "1.5/2"}) {
+    ExpectRefused(RunBatten({"bench", suite, "--dry_run", std::string("--shard=") + shard}),
+                  {"--shard: found", "I/N"});
+  }
+  ExpectRefused(RunBatten({"bench", folder_ / "none.json", "--dry_run"}), {"none.json"});
+  ExpectRefused(RunBatten({"regress", folder_ / "a", folder_ / "b"}), {"manifest.json"});
+}
+
+}  // namespace
+}  // namespace batten
