@@ -42,6 +42,7 @@ Command FitCommand();        // fit_command.cc
 Command CompareCommand();    // compare_command.cc
 Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
+Command ReportCommand();     // report_command.cc
 Command ListCommand();       // list_command.cc
 Command HelpCommand();       // help_command.cc
 
