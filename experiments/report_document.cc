@@ -71,6 +71,7 @@ std::string Joined(const std::vector<std::string>& words) {
 }
 
 bool FolderReader::ReadTraces(std::string* error) {
+  std::map<std::string, std::string> terms;  // by problem
   for (OrderedJson& cell : cells_) {
     traces_.emplace_back();
     const std::string key = TextField(cell, "key");
@@ -79,7 +80,13 @@ bool FolderReader::ReadTraces(std::string* error) {
     if (!ReadReportTrace(InFolder(name), limits_.rows_per_trace, &traces_.back(), &notes_, error)) {
       return false;
     }
+    terms.emplace(TextField(cell, "problem"), Joined(traces_.back().terms));
     if (!cell.contains("terms")) cell["terms"] = Joined(traces_.back().terms);
+  }
+  // Runs without a trace, skipped ones above all, belong to the problem as the others ran it.
+  for (OrderedJson& cell : cells_) {
+    const auto found = terms.find(TextField(cell, "problem"));
+    if (!cell.contains("terms") && found != terms.end()) cell["terms"] = found->second;
   }
   return true;
 }

@@ -159,8 +159,8 @@ class Plot {
 // --- Parts of specifications.
 const axisOf = (field, title, isLog, extra = {}) => ({
   field, type: 'quantitative', title,
-  scale: isLog ? { type: 'log', nice: false } : { zero: false, ...extra.scale },
-  axis: { format: isLog ? '~e' : '~g' },
+  scale: { ...(isLog ? { type: 'log', nice: false } : { zero: false }), ...extra.scale },
+  axis: { format: isLog && field === 'py' ? '~e' : '~g' },
 });
 function looksOf(solvers, channel, looks) {
   return { field: 'solver', type: 'nominal', title: null,
@@ -200,6 +200,7 @@ function lineSpec({ width, height, solvers, x, y, tooltip, interpolate = 'linear
 function dotSpec({ width, height, solvers, x, y, tooltip }) {
   const color = colours(solvers, width);
   delete color.legend.symbolType;
+  color.legend.symbolSize = 80;
   return {
     width, height, autosize: { type: 'fit', contains: 'padding' }, data: { name: 'rows' },
     params: [kZoom], mark: { type: 'point', filled: true, size: 55, opacity: 0.8, clip: true },

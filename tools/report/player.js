@@ -129,12 +129,12 @@ class Player {
   runs() {
     return chosen.filter(row => row.group === this.state.group && row.key in curves().runs);
   }
-  last() { return Math.max(0, ...this.runs().map(row => curves().runs[row.key].iterations.at(-1))); }
-  // All iterations that some run has kept: the player stops at these.
+  // The iterations that some run that is shown has kept: the player stops at these.
   stops() {
-    return [...new Set(this.runs().flatMap(row => curves().runs[row.key].iterations))]
+    return [...new Set(this.panels().flatMap(row => curves().runs[row.key].iterations))]
       .sort((a, b) => a - b);
   }
+  last() { return this.stops().at(-1) ?? 0; }
   step(way) {
     const stops = this.stops(), now = this.state.iteration;
     const next = way > 0 ? stops.find(stop => stop > now) : stops.findLast(stop => stop < now);

@@ -1,7 +1,7 @@
 // The plots that are computed from the runs that pass the filters.
 
 const kAlong = {
-  iteration: { title: 'iteration', column: 1 },
+  iteration: { title: 'iteration', many: 'iterations', column: 1 },
   evaluations: { title: 'evaluations of E, gradient and Jacobian, products', column: 2 },
   seconds: { title: 'wall time of the solver (s)', column: 3, isTime: true },
   cpu_seconds: { title: 'processor time of the solver (s)', column: 4, isTime: true },
@@ -14,6 +14,7 @@ const kUp = {
 };
 const kMostLines = 150;
 
+const manyOf = measure => kAlong[measure].many ?? kAlong[measure].title;
 const traceOf = row => (row.key ? traces()[row.key] : undefined);
 
 function excludedText(parts) {
@@ -32,12 +33,16 @@ function convergencePlot(settings) {
     const timed = withTrace.filter(row => !(along.isTime && isOverlapped(row)));
     const drawn = timed.slice(0, kMostLines);
     const data = drawn.flatMap((row, run) => convergenceRows(row, run, along, settings, group));
+    const atEdge = settings.logX && putStartsAtEdge(data);
     const solvers = allSolvers.filter(solver => drawn.some(row => row.solver === solver));
     const star = group.direct ? 'of the direct answer' : 'the lowest that any run of the folder saw';
     const caption = `${up.title} against ${along.title}, each run of ` +
       `${all.length > 0 ? groupName(settings.group) : 'no problem'} a line. ` +
       `E* = ${show(group.minimum, 8)}, ${star}. ` +
-      'Traces are thinned to 64 rows a run; values that are 0 or less leave the logarithmic axis.' +
+      'Traces are thinned to 64 rows a run.' +
+      (atEdge ? ' What is at 0 along is drawn at the left edge.' : '') +
+      (['gap', 'excess'].includes(settings.up)
+        ? ' Where E − E* is below the rounding of E, that is drawn.' : '') +
       excludedText([
         [all.length - withTrace.length, 'without a trace (skipped, crashed, or none was kept)'],
         [withTrace.length - timed.length, 'timed while other runs went on (overlapped)'],
@@ -65,16 +70,26 @@ function convergenceRows(row, run, along, settings, group) {
   const label = [row.key, isNumber(row.repetition) ? `repetition ${row.repetition}` : null,
                  isNumber(row.start_seed) ? `start ${row.start_seed}` : null]
     .filter(Boolean).join(', ');
-  const up = { gap: k => excess[k] / first, excess: k => excess[k],
+  const rounding = 2 ** -52 * Math.abs(group.minimum);
+  const up = { gap: k => Math.max(excess[k], rounding) / first,
+               excess: k => isNumber(excess[k]) ? Math.max(excess[k], rounding) : null,
                energy: k => excess[k] + group.minimum, gradient: k => gradients[k] }[settings.up];
   const points = [];
   for (let k = 0; k < iterations.length; ++k) {
-    let px = xs[k], py = up(k);
-    if (!isNumber(px) || !isNumber(py) || (settings.logX && px <= 0) || py <= 0) continue;
+    const px = xs[k], py = excess[k] === null ? null : up(k);
+    if (!isNumber(px) || !isNumber(py) || px < 0 || py <= 0) continue;
     points.push({ problem: row.problem, solver: row.solver, key: row.key ?? '', run, label,
                   iteration: iterations[k], px, py });
   }
   return points;
+}
+
+// A logarithmic axis has no 0: half the smallest value beyond it stands for it.
+function putStartsAtEdge(points) {
+  const least = points.reduce((min, point) => point.px > 0 ? Math.min(min, point.px) : min, Infinity);
+  const atZero = points.filter(point => point.px === 0);
+  for (const point of atZero) point.px = Number.isFinite(least) ? least / 2 : 0.5;
+  return atZero.length > 0;
 }
 
 // --- How much a run needs to a target, which E* and the whole trace have decided.
@@ -110,7 +125,7 @@ const failureText = runs => {
     `${count('skipped')} skipped since the solver does not apply, where they miss the target.`;
 };
 const targetText = target =>
-  target === 'stop' ? 'what the run was asked for (its stop rule)' : `a gap of ${target}`;
+  target === 'stop' ? 'what the run was asked for (its stop rule)' : `a gap of ${target.toExponential()}`;
 
 // Dolan, More, Benchmarking optimization software with performance profiles, 2002:
 // rho_s(tau) = share of instances that s solves within tau times the cost of the best solver.
@@ -138,13 +153,13 @@ function profilePlot(settings) {
       steps(solver, ratios.get(solver), list.length, 1, widest * 1.2));
     const caption = `Dolan and Moré (2002): share of ${counted(list.length, 'instance')} that a ` +
       `solver brings to ${targetText(target)} with at most tau times the ` +
-      `${kAlong[measure].title} of the best solver there. ` +
+      `${manyOf(measure)} of the best solver there. ` +
       failureText(list.flatMap(runs => [...runs.values()])) +
       ` ${counted(unsolved, 'instance')} solved by none count for all. A profile of more than two ` +
       'solvers is no order of any two: filter to a pair for that.' +
       excludedText([[numOverlapped, 'timed while other runs went on (overlapped)']]);
     return shareSpec({ width, solvers, data, caption, logX: true,
-                       x: `tau: ${kAlong[measure].title} over the least of all solvers, no unit`,
+                       x: `tau: ${manyOf(measure)} over the least of all solvers, no unit`,
                        y: 'share of instances' });
   });
 }
@@ -165,7 +180,7 @@ function runtimePlot(settings) {
     const data = solvers.flatMap(solver =>
       steps(solver, times.get(solver), list.length * kTargets.length, shortest, longest * 1.2));
     const caption = `Share of ${counted(list.length * kTargets.length, 'pair')} of an instance and a ` +
-      `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${kAlong[measure].title}. ` +
+      `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${manyOf(measure)}. ` +
       failureText(list.flatMap(runs => [...runs.values()])) +
       excludedText([[numOverlapped, 'timed while other runs went on (overlapped)']]);
     return shareSpec({ width, solvers, data, caption, logX: true, x: kAlong[measure].title,
@@ -221,7 +236,8 @@ function endPlot(settings) {
       columns: { problem: 'problem', solver: 'solver', key: 'key', stop: 'stop', px: along.title,
                  py: title },
       spec: dotSpec({ width, height: heightFor(width, solvers), solvers,
-                      x: axisOf('px', along.title, true), y: axisOf('py', title, true),
+                      x: axisOf('px', along.title, true, { scale: { padding: 12 } }),
+                      y: axisOf('py', title, true, { scale: { padding: 12 } }),
                       tooltip: [{ field: 'problem', title: 'problem' },
                                 { field: 'solver', title: 'solver' },
                                 { field: 'stop', title: 'stop' },

@@ -98,7 +98,6 @@ function start() {
   if (rows.length > 0) {
     main.append(filterSection());
     addRunSections();
-    addPlayer();
   } else if (doc.tables.length === 0) {
     main.append(element('p', {}, 'No run is finished yet.'));
   }

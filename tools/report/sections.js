@@ -14,6 +14,7 @@ function addRunSections() {
   addTableSection('Summary', summaryContent);
   addConvergence();
   addProfiles();
+  addPlayer();
   addTableSection('Runs', runsContent);
   addTableSection('Failures', failuresContent);
   addTableSection('Claim and audit', auditContent);
@@ -89,7 +90,7 @@ function addProfiles() {
   const profile = profilePlot(settings), runtime = runtimePlot(settings);
   const refresh = () => { profile.refresh(); runtime.refresh(); };
   const targets = [['stop', 'what the run was asked for'],
-                   ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t}`]) : [])];
+                   ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t.toExponential()}`]) : [])];
   const controls = element('div', { class: 'row' },
     select('Measured by', [['iteration', 'iterations'], ['evaluations', 'evaluations'],
                            ['seconds', 'wall time'],
@@ -141,7 +142,7 @@ function runsContent() {
   const columns = [...used, { field: 'index', title: 'all', text: true, cell: row =>
     element('button', { type: 'button', onclick: () => showRow(row),
                         'aria-label': `All of ${row.problem}, ${row.solver}` }, 'All') }];
-  return [sortableTable(columns, chosen, { name: 'runs', page: 50 }), details];
+  return [sortableTable(columns, chosen, { name: 'runs', page: 20 }), details];
 }
 
 function failuresContent() {
@@ -161,7 +162,7 @@ function failuresContent() {
   const why = row => [row.message, row.failure, row.disagreement].filter(Boolean).map(textOf).join('; ');
   const withWhy = some => some.map(row => ({ ...row, why: why(row) }));
   return [
-    list.length > 0 ? sortableTable(columns, withWhy(list), { name: 'failures', page: 30 })
+    list.length > 0 ? sortableTable(columns, withWhy(list), { name: 'failures', page: 20 })
                     : element('p', {}, 'None of these runs failed.'),
     skipped.length > 0 ? element('details', {},
       element('summary', {}, `${counted(skipped.length, 'run')} skipped: the solver does not apply`),
@@ -194,7 +195,7 @@ function auditContent() {
     { field: 'gradient_floor', title: 'rounding floor of |g| (unit)' },
     { field: 'failure', title: 'why', text: true }];
   return [element('p', {}, text),
-          audited.length > 0 ? sortableTable(columns, audited, { name: 'audit', page: 30 }) : null];
+          audited.length > 0 ? sortableTable(columns, audited, { name: 'audit', page: 20 }) : null];
 }
 
 function optionsContent() {

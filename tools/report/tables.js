@@ -16,7 +16,7 @@ function sortableTable(columns, list, { page = 100, name = '' } = {}) {
     state.descending = state.column === column && !state.descending;
     state.column = column;
     const sign = state.descending ? -1 : 1;
-    state.sorted = [...list].sort((a, b) => sign * compare(a[column.field], b[column.field]));
+    state.sorted = [...list].sort((a, b) => compare(a[column.field], b[column.field], sign));
     headers.forEach((header, k) => header.setAttribute('aria-sort',
       columns[k] !== column ? 'none' : state.descending ? 'descending' : 'ascending'));
     fill();
@@ -42,7 +42,7 @@ function tableCell(column, row, isNumber) {
   if (isNumber) return element('td', { class: 'number' }, show(asNumber(value), column.digits));
   const content = column.cell ? column.cell(row) : show(value, column.digits);
   const isLong = typeof content === 'string' && content.length > 40;
-  return element('td', { class: isLong ? 'text long' : 'text' }, content);
+  return element('td', { class: isLong ? 'long' : 'text' }, content);
 }
 const tableCsv = (columns, list) => csvText(columns.map(column => column.title),
   list.map(row => Object.fromEntries(columns.map(column => [column.title, row[column.field]]))));
@@ -55,13 +55,13 @@ function isNumeric(value) {
   return typeof value === 'string' && (asNumber(value) === null || !Number.isNaN(asNumber(value)));
 }
 
-// Numbers by size, texts by letters, what is missing last.
-function compare(a, b) {
+// Numbers by size, texts by letters; what is missing stays last when the sign turns.
+function compare(a, b, sign) {
   const [x, y] = [a, b].map(value => isNumeric(value) ? asNumber(value) : textOf(value));
   const missing = value => value === null || value === undefined || value === '';
   if (missing(x) || missing(y)) return missing(x) - missing(y);
-  if (typeof x === 'number' && typeof y === 'number') return x - y;
-  return String(x).localeCompare(String(y), 'en', { numeric: true });
+  if (typeof x === 'number' && typeof y === 'number') return sign * (x - y);
+  return sign * String(x).localeCompare(String(y), 'en', { numeric: true });
 }
 
 function select(label, options, value, onchange) {

@@ -9,8 +9,14 @@ folder=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 packages=(vega@6.4.0 vega-lite@6.5.0 vega-embed@7.3.0)
 bundles=(vega/build/vega.min.js vega-lite/build/vega-lite.min.js
          vega-embed/build/vega-embed.min.js)
-# Of the command-line programs that come along, not of the bundles.
-not_bundled='^(yargs|yargs-parser|cliui|escalade|get-caller-file|string-width|strip-ansi|ansi-regex|ansi-styles|wrap-ansi|y18n|emoji-regex|node-fetch|whatwg-url|webidl-conversions|tr46|commander|iconv-lite|safer-buffer|rw|d3-dsv)$'
+# Types, and what only the command-line programs that come along need: in no bundle.
+not_bundled=' ansi-regex ansi-styles cliui commander emoji-regex escalade get-caller-file
+ get-east-asian-width string-width strip-ansi wrap-ansi y18n yargs yargs-parser d3-dsv iconv-lite
+ node-fetch rw safer-buffer tr46 webidl-conversions whatwg-url '
+is_bundled() {
+  [[ $1 != @types/* && ! $not_bundled =~ [[:space:]]"${1%%/node_modules/*}"[[:space:]] &&
+     ! $not_bundled =~ [[:space:]]"${1##*/node_modules/}"[[:space:]] ]]
+}
 
 case "${1-}" in
   '' | --accept) ;;
@@ -34,7 +40,7 @@ done
   find node_modules -mindepth 2 -maxdepth 4 -iname 'licen[sc]e*' -type f | LC_ALL=C sort |
     while read -r licence; do
       package=$(dirname "${licence#node_modules/}")
-      [[ $package =~ $not_bundled ]] && continue
+      is_bundled "$package" || continue
       version=$(node -p "require('./node_modules/$package/package.json').version")
       printf '\n==== %s %s\n\n' "$package" "$version"
       tr -d '\r' <"$licence" | sed 's/[ \t]*$//'
