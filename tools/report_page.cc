@@ -2,7 +2,7 @@
 
 #include <glog/logging.h>
 
-#include "report_assets.h"
+#include "tools/report_assets.h"
 
 namespace batten {
 namespace {

@@ -5,10 +5,8 @@
   const expect = (what, holds) => results.push((holds ? 'ok ' : 'FAILED ') + what);
   const all = selector => [...document.querySelectorAll(selector)];
   const settled = async () => {
-    for (let before = null; before !== allPlots.map(p => p.isDone).length;) {
-      before = allPlots.length;
-      await Promise.all(allPlots.map(plot => plot.isDone));
-    }
+    // Once more: a plot that was being drawn may have been asked for again.
+    for (let k = 0; k < 2; ++k) await Promise.all(allPlots.map(plot => plot.isDone));
   };
   const drawAll = async () => {
     for (const plot of allPlots) await plot.draw();
@@ -24,6 +22,10 @@
     expect('the page is ready', document.documentElement.dataset.ready === 'yes');
     expect('no text of the data became an element', !document.querySelector('b, main script, img[onerror]'));
     expect('no wider than the window', document.documentElement.scrollWidth <= innerWidth);
+    for (const details of all('details')) details.open = true;
+    expect('nor with all opened', document.documentElement.scrollWidth <= innerWidth);
+    expect('each figure says what it shows', all('figure').every(figure =>
+      figure.querySelector('figcaption').textContent.length > 20));
     const ids = all('[id]').map(node => node.id);
     expect('no id stands twice', new Set(ids).size === ids.length);
     for (const link of all('#contents a')) {

@@ -150,7 +150,7 @@ TEST(ReportCommand, AFolderWithoutAFinishedRunHasAPage) {
   EXPECT_THAT(ended.out, HasSubstr("(0 rows)"));
 }
 
-TEST(CompareCommand, KeepsIteratesOnlyInAFolder) {
+TEST(ReportCommand, ItsIteratesAreKeptOnlyInAFolder) {
   const Ended ended =
       RunBatten({"compare", "--problems=rhino", "--solvers=cg", "--keep_iterates=5"});
   EXPECT_EQ(ended.status, 2);

@@ -5,7 +5,9 @@ function addFolderSections() {
   const tables = new Map(doc.tables.map(table => [table.name, table]));
   for (const page of doc.pages) addPage(page, pictures, tables);
   if (pictures.size > 0) {
-    addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(pictureOf)));
+    addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
+      pictureOf(picture, `As drawn when the folder was written; what is plotted stands in ` +
+                         `${picture.name.replace(/\.svg$/, '.dat')} beside it.`))));
   }
   if (tables.size > 0) {
     addSection('Tables', element('div', {}, ...[...tables.values()].map(table =>
@@ -26,8 +28,9 @@ function addPage(page, pictures, tables) {
                    { field: 'quote', title: 'claim', text: true },
                    { field: 'verdict', title: 'verdict', text: true, cell: verdict },
                    { field: 'because', title: 'because', text: true }];
-  addSection('Verdicts', element('div', {}, element('p', {}, page.title),
-                                 sortableTable(columns, list, { name: 'verdicts' })));
+  const of = doc.pages.length > 1 ? `: ${page.title}` : '';
+  addSection('Verdicts' + of, element('div', {}, element('p', {}, page.title),
+                                 sortableTable(columns, list, { name: 'verdicts' + of })));
   const experiments = sections.map(section => element('details', {},
     element('summary', {}, section.title),
     ...section.claims.flatMap(claim => [
@@ -44,7 +47,7 @@ function addPage(page, pictures, tables) {
       tables.delete(name);
       return [element('h3', {}, name), folderTable(table)];
     })));
-  addSection('Experiments', element('div', {}, ...experiments));
+  addSection('Experiments' + of, element('div', {}, ...experiments));
 }
 
 // As an image: scripts in a picture do not run.

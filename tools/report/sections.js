@@ -118,7 +118,7 @@ const kRunColumns = [
   { field: 'stop', title: 'stop', text: true }, { field: 'iterations', title: 'iterations' },
   { field: 'evaluations', title: 'evaluations' }, { field: 'seconds', title: 'time (s)' },
   { field: 'energy', title: 'E (unit of the data, squared)', digits: 6 },
-  { field: 'energy_at_foot_points', title: 'E at foot points (unit squared)', digits: 6 },
+  { field: 'energy_at_foot_points', title: 'E at foot points (unit of the data, squared)', digits: 6 },
   { field: 'gap', title: 'gap, no unit' }, { field: 'gradient_norm', title: '|g| (unit of the data)' },
   { field: 'rms', title: 'rms distance (unit of the data)' },
   { field: 'max', title: 'largest distance (unit of the data)' },
@@ -187,12 +187,12 @@ function auditContent() {
     { field: 'stop', title: 'claim (stop)', text: true },
     { field: 'says', title: 'audit', text: true, cell: row =>
       element('span', { class: row.verified ? 'good' : 'bad' }, row.says) },
-    { field: 'energy', title: 'E claimed (unit squared)', digits: 8 },
-    { field: 'audit_energy', title: 'E audited (unit squared)', digits: 8 },
+    { field: 'energy', title: 'E claimed (unit of the data, squared)', digits: 8 },
+    { field: 'audit_energy', title: 'E audited (unit of the data, squared)', digits: 8 },
     { field: 'energy_off', title: 'difference over E, no unit', digits: 2 },
-    { field: 'gradient_norm', title: '|g| claimed (unit)' },
-    { field: 'audit_gradient_norm', title: '|g| audited (unit)' },
-    { field: 'gradient_floor', title: 'rounding floor of |g| (unit)' },
+    { field: 'gradient_norm', title: '|g| claimed (unit of the data)' },
+    { field: 'audit_gradient_norm', title: '|g| audited (unit of the data)' },
+    { field: 'gradient_floor', title: 'rounding floor of |g| (unit of the data)' },
     { field: 'failure', title: 'why', text: true }];
   return [element('p', {}, text),
           audited.length > 0 ? sortableTable(columns, audited, { name: 'audit', page: 20 }) : null];
