@@ -107,12 +107,14 @@ OrderedJson CellsByColumn(const std::vector<OrderedJson>& cells) {
       if (is_common.emplace(field, true).second) fields.push_back(field);
     }
   }
-  for (auto& [field, common] : is_common) {
-    common = cells.size() > 1 && std::all_of(cells.begin(), cells.end(), [&](const auto& cell) {
-               const auto first = cells.front().find(field);
-               const auto found = cell.find(field);
-               return first != cells.front().end() && found != cell.end() && *first == *found;
-             });
+  for (auto& entry : is_common) {
+    const std::string& field = entry.first;
+    const auto first = cells.front().find(field);
+    entry.second = cells.size() > 1 && first != cells.front().end() &&
+                   std::all_of(cells.begin(), cells.end(), [&](const OrderedJson& cell) {
+                     const auto found = cell.find(field);
+                     return found != cell.end() && *first == *found;
+                   });
   }
   OrderedJson result = {{"common", OrderedJson::object()},
                         {"fields", OrderedJson::array()},
