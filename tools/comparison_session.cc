@@ -73,7 +73,7 @@ bool ComparisonSession::Prepare(std::string* error) const {
       outputs.push_back({"out", file});
     }
   }
-  return CheckOutputs(outputs, inputs, error) && PrepareRunRecords(files_.folder, spec_, error);
+  return CheckOutputs(outputs, inputs, error) && CheckRunRecords(files_.folder, spec_, error);
 }
 
 int ComparisonSession::Run(CommandOutput* output) {

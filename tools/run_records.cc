@@ -41,15 +41,26 @@ std::vector<std::string> TermNames(const Problem& problem) {
   return names;
 }
 
+/// The folders of the records.
+std::vector<std::string> Kinds(const ComparisonSpec& spec) {
+  if (spec.kept_iterates == 0) return {"traces"};
+  return {"traces", "iterates", "curves"};
+}
+
 }  // namespace
 
-bool PrepareRunRecords(const std::string& folder, const ComparisonSpec& spec, std::string* error) {
-  std::vector<const char*> kinds = {"traces"};
-  if (spec.kept_iterates > 0) kinds.insert(kinds.end(), {"iterates", "curves"});
-  for (const char* kind : kinds) {
-    if (!CreateDirectories((fs::path(folder) / kind).string(), error) ||
-        !AtomicFile().Open(Path(folder, kind, "0"), error)) {
-      *error = "--out: " + *error;
+bool CheckRunRecords(const std::string& folder, const ComparisonSpec& spec, std::string* error) {
+  std::error_code ignored;
+  for (const std::string& kind : Kinds(spec)) {
+    const std::string path = (fs::path(folder) / kind).string();
+    const bool is_folder = fs::is_directory(path, ignored);
+    if (!is_folder && fs::exists(path, ignored)) {
+      *error = "--out: cannot write into " + path + ": it is no folder";
+      return false;
+    }
+    std::string reason;
+    if (is_folder && !AtomicFile().Open(path + "/0", &reason)) {
+      *error = "--out: " + reason;
       return false;
     }
   }
@@ -60,6 +71,9 @@ bool WriteRunRecords(const CatalogueEntry& entry, const ComparisonResult& result
                      const std::string& folder, FileBatch* batch, std::string* error) {
   const Problem& problem = *result.problems.at(0);
   const CurveFit* const fit = problem.curve_fit();
+  for (const std::string& kind : Kinds(result.spec)) {
+    if (!CreateDirectories((fs::path(folder) / kind).string(), error)) return false;
+  }
   const bool has_iterates = result.spec.kept_iterates > 0 && fit != nullptr;
   for (std::size_t k = 0; k < result.rows.size(); ++k) {
     const RunResult& run = result.rows[k].run;

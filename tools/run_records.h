@@ -9,12 +9,13 @@
 
 namespace batten {
 
-/// Makes the folders of the records below and tries to write into them.
-bool PrepareRunRecords(const std::string& folder, const ComparisonSpec& spec, std::string* error);
+/// Whether the folders of the records below, as far as they are there, can be written into.
+bool CheckRunRecords(const std::string& folder, const ComparisonSpec& spec, std::string* error);
 
 /// What belongs to the rows of one problem but does not fit into them: FOLDER/traces/KEY.csv and,
 /// with spec.kept_iterates, FOLDER/iterates/KEY.jsonl of each run that was not skipped, and
-/// FOLDER/curves/PROBLEM.json, the spline and the data points to show iterates by.
+/// FOLDER/curves/PROBLEM.json, the spline and the data points to show iterates by. Makes the
+/// folders.
 bool WriteRunRecords(const CatalogueEntry& entry, const ComparisonResult& result,
                      const std::string& folder, FileBatch* batch, std::string* error);
 

@@ -75,7 +75,8 @@ TEST_F(ReportDocumentTest, LeavesOutATornLastLineAndSaysSo) {
 TEST_F(ReportDocumentTest, NamesTheLineThatIsNoRow) {
   Write("cells.jsonl", "{\"solver\": \"cg\"}\n\nnonsense\n{\"solver\": \"gim\"}\n");
   EXPECT_FALSE(Read());
-  EXPECT_EQ(error_, folder_ + "/cells.jsonl:3: found \"nonsense\"; allowed: one JSON object a line");
+  EXPECT_EQ(error_,
+            folder_ + "/cells.jsonl:3: found \"nonsense\"; allowed: one JSON object a line");
 }
 
 TEST_F(ReportDocumentTest, RefusesAKeyThatLeadsOutOfTheFolder) {

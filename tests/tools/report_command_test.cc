@@ -27,11 +27,11 @@ std::size_t Count(const std::string& text, const std::string& part) {
 TEST(ReportCommand, ShowsWhatCompareWrote) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  ASSERT_EQ(RunBatten({"compare", "--problems=rhino,rhino_free", "--solvers=cg,foot_newton",
-                       "--repetitions=1", "--nofigures", "--keep_iterates=5", "--out=" + out,
-                       "--quiet"})
-                .status,
-            0);
+  ASSERT_EQ(
+      RunBatten({"compare", "--problems=rhino,rhino_free", "--solvers=cg,foot_newton",
+                 "--repetitions=1", "--nofigures", "--keep_iterates=5", "--out=" + out, "--quiet"})
+          .status,
+      0);
   const Ended ended = RunBatten({"report", out});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.out, "Page: " + out + "/report.html  (4 rows)\n");
@@ -106,10 +106,10 @@ TEST(ReportCommand, TheProgramHoldsTheFilesOfThePageAsTheyStand) {
   ASSERT_EQ(RunBatten({"report", folder / ""}).status, 0);
   const std::string page = ReadFile(folder / "report.html");
   const std::string source = std::string(BATTEN_SOURCE_DIR) + "/tools/report/";
-  for (const char* name : {"report.css", "data.js", "charts.js", "plots.js", "tables.js",
-                           "sections.js", "folder.js", "player.js", "report.js",
-                           "vendor/vega.min.js", "vendor/vega-lite.min.js",
-                           "vendor/vega-embed.min.js"}) {
+  for (const char* name :
+       {"report.css", "data.js", "charts.js", "plots.js", "tables.js", "sections.js", "folder.js",
+        "player.js", "report.js", "vendor/vega.min.js", "vendor/vega-lite.min.js",
+        "vendor/vega-embed.min.js"}) {
     const std::string text = ReadFile(source + name);
     EXPECT_GT(text.size(), 1000u) << name;
     EXPECT_NE(page.find(text), std::string::npos) << name;
@@ -148,6 +148,16 @@ TEST(ReportCommand, AFolderWithoutAFinishedRunHasAPage) {
   const Ended ended = RunBatten({"report", folder / ""});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("(0 rows)"));
+}
+
+TEST(ReportCommand, AFileWhereTracesBelongIsSeenBeforeAnythingRuns) {
+  const TemporaryFolder folder;
+  folder.Write("traces", "");
+  const Ended ended = RunBatten({"compare", "--problems=rhino", "--solvers=cg", "--repetitions=1",
+                                 "--nofigures", "--out=" + (folder / "")});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(ended.err, "--out: cannot write into " + (folder / "traces") + ": it is no folder\n");
+  EXPECT_EQ(folder.Names(), std::vector<std::string>{"traces"});
 }
 
 TEST(ReportCommand, ItsIteratesAreKeptOnlyInAFolder) {
