@@ -35,7 +35,7 @@ function derive(row, index) {
   const counts = ['energy_calls', 'gradient_calls', 'jacobian_calls', 'products'].map(f => row[f]);
   row.evaluations = counts.some(isNumber) ? counts.reduce((sum, n) => sum + (n ?? 0), 0) : null;
   // The same instance in another repetition or with another seed is another run to solve.
-  row.instance = JSON.stringify([row.group, row.start_seed, row.seed, row.repetition]);
+  row.instanceId = JSON.stringify([row.group, row.start_seed, row.seed, row.repetition]);
   return row;
 }
 

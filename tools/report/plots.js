@@ -111,8 +111,8 @@ function instances(measure) {
   const list = kAlong[measure].isTime ? chosen.filter(row => !isOverlapped(row)) : chosen;
   const byInstance = new Map();
   for (const row of list) {
-    if (!byInstance.has(row.instance)) byInstance.set(row.instance, new Map());
-    byInstance.get(row.instance).set(row.solver, row);
+    if (!byInstance.has(row.instanceId)) byInstance.set(row.instanceId, new Map());
+    byInstance.get(row.instanceId).set(row.solver, row);
   }
   return { list: [...byInstance.values()], numOverlapped: chosen.length - list.length };
 }

@@ -130,7 +130,7 @@ function runsContent() {
     chosen.some(row => row[column.field] !== null && row[column.field] !== undefined));
   const details = element('div', { 'aria-live': 'polite' });
   const showRow = row => {
-    const { termList, verdict, index, group, instance, options, ...fields } = row;
+    const { termList, verdict, index, group, instanceId, options, ...fields } = row;
     const { notes, ...rest } = fields;
     details.replaceChildren(element('h3', { tabindex: -1 }, `${row.problem}: ${row.solver}`),
       element('p', {}, 'Options that really ran:'), definitions(options ?? {}),
