@@ -85,7 +85,7 @@ CsvTable RunTable(const BenchResults& results) {
   CsvTable table({"problem",      "terms",     "data_seed",     "start_seed", "solver",
                   "seed",         "stop",      "verified",      "iterations", "evaluations",
                   "energy",       "gap",       "gradient_norm", "basin",      "rms_orthogonal",
-                  "findings",        "message",   "repetitions",   "seconds",    "seconds_low",
+                  "findings",     "message",   "repetitions",   "seconds",    "seconds_low",
                   "seconds_high", "work_units"});
   for (const BenchRun& run : results.runs) {
     const nlohmann::json& row = *run.first;

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "experiments/basins.h"
+#include "experiments/comparison_reference.h"
+#include "experiments/kept_rows.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -98,8 +100,8 @@ RunSpec ProblemComparison::FirstRunSpec() const {
   RunSpec run_spec = spec_.run;
   const double bytes = static_cast<double>(problem_.num_variables()) *
                        (1.0 + run_spec.max_iterations) * sizeof(double);
-  run_spec.keep_iterates =
-      run_spec.keep_iterates || (run_spec.keep_trace && direct_.known() && bytes <= kMostBytes);
+  const bool uses_iterates = spec_.kept_iterates > 0 || (run_spec.keep_trace && direct_.known());
+  run_spec.keep_iterates = run_spec.keep_iterates || (uses_iterates && bytes <= kMostBytes);
   return run_spec;
 }
 
@@ -149,7 +151,15 @@ void ProblemComparison::MeasureTrace(ComparisonRow* row) const {
     }
     row->excess_energies.push_back(excess);
   }
-  if (!spec_.run.keep_iterates) row->run.iterates = {};
+  if (spec_.run.keep_iterates) return;
+  std::vector<Iterate> kept;
+  if (spec_.kept_iterates > 0) {
+    const auto most = static_cast<std::size_t>(spec_.kept_iterates);
+    for (const std::size_t k : KeptRows(run.iterates.size(), most)) {
+      kept.push_back(run.iterates[k]);
+    }
+  }
+  row->run.iterates = std::move(kept);
 }
 
 void ProblemComparison::Measure(std::size_t solver) {

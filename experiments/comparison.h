@@ -20,6 +20,9 @@ struct ComparisonSpec {
   std::vector<NameSpec> solvers;
   RunSpec run;
   int repetitions = 5;  // >= 1; interleaved: all solvers once, then all again, ...
+  /// So many iterates of each run stay in its row, by KeptRows; none of a run whose iterates, at
+  /// max_iterations, would need more than 256 MiB.
+  int kept_iterates = 0;
   /// Told before each run: "rhino: lbfgs" is run done + 1 of total; may be empty.
   std::function<void(int done, int total, const std::string& running)> progress;
 };

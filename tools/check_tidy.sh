@@ -9,6 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=build-tidy
 cmake --preset release -B "$build" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DBATTEN_BUILD_TESTS=OFF \
   >/dev/null
+cmake --build "$build" --target batten_report_assets >/dev/null
 # It reports its progress, colours and thousands of hidden warnings of other people's headers even
 # where nobody looks; only what it found is of interest.
 run-clang-tidy -p "$build" -j 2 -quiet -extra-arg=-Wno-unknown-warning-option \

@@ -21,8 +21,8 @@ bool IsAny(const std::string& text, const std::vector<std::string>& words) {
 
 const std::vector<Command>& Commands() {
   static const auto& commands = *new std::vector<Command>{
-      FitCommand(),       CompareCommand(),   BenchCommand(), MergeCommand(), RegressCommand(),
-      ReproduceCommand(), SubdivideCommand(), ListCommand(),  HelpCommand(),
+      FitCommand(),    CompareCommand(),   BenchCommand(),     MergeCommand(), RegressCommand(),
+      ReportCommand(), ReproduceCommand(), SubdivideCommand(), ListCommand(),  HelpCommand(),
   };
   return commands;
 }
@@ -36,7 +36,8 @@ const Command* FindCommand(const std::string& name) {
 
 int RunCommandLine(const std::vector<std::string>& arguments, CommandOutput* output) {
   if (arguments.empty()) {
-    return Refuse("found no command; allowed: fit, compare, list, help; try: batten help", output);
+    return Refuse("found no command; allowed: fit, compare, report, list, help; try: batten help",
+                  output);
   }
   const std::string& name = arguments.front();
   if (IsAny(name, {"--help", "-help", "-h"})) {

@@ -46,6 +46,7 @@ Command MergeCommand();      // merge_command.cc
 Command RegressCommand();    // regress_command.cc
 Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
+Command ReportCommand();     // report_command.cc
 Command ListCommand();       // list_command.cc
 Command HelpCommand();       // help_command.cc
 

@@ -23,6 +23,10 @@ DEFINE_int32(
     starts, 0,
     "Problems with free parameters: how often each solver finds which minimum from so many "
     "disturbed circles, instead of the usual table.");
+DEFINE_int32(
+    keep_iterates, 0,
+    "So many iterates of each run are kept, for the player of batten report; not where all "
+    "of a run's, at --max_iterations, would need more than 256 MiB.");
 DEFINE_bool(strict, false, "Exit status 1 if some solver did not reach what was asked.");
 DEFINE_bool(figures, true, "Draw convergence and fitted curves with gnuplot.");
 DEFINE_bool(
@@ -100,6 +104,13 @@ int RunCompare(const std::vector<std::string>& positional, CommandOutput* output
   if (FLAGS_resume && !WasGiven("out")) {
     return Refuse("--resume: found without --out; allowed: with the folder to go on in", output);
   }
+  if (FLAGS_keep_iterates > 0 && (!WasGiven("out") || WasGiven("starts"))) {
+    return Refuse("--keep_iterates: found " +
+                      std::string(WasGiven("out") ? "with --starts" : "without --out") +
+                      "; allowed: with the folder to keep them in, without --starts",
+                  output);
+  }
+  spec.kept_iterates = FLAGS_keep_iterates;
   if (WasGiven("starts")) {
     std::vector<std::shared_ptr<const Problem>> problems;
     for (const Contest& contest : contests) problems.push_back(contest.problem);
@@ -125,7 +136,8 @@ Command CompareCommand() {
   command.summary = "runs solvers on problems and prints one table";
   command.details = {
       "Writes OUT/table.csv, .json, .md and .tex, OUT/cells.jsonl (one row per problem and solver, "
-      "written as each problem is finished), and for each problem OUT/PROBLEM_convergence and "
+      "written as each problem is finished), the trace of each run in OUT/traces, and for each "
+      "problem OUT/PROBLEM_convergence and "
       "OUT/PROBLEM_fit: .svg with the gnuplot script (.gp) and the data (.dat) behind it. Rows are "
       "explained in docs/formats.md. Lengths are in the unit of the data, E in its square.",
       "Exit status 3: a claim failed its audit, or solvers that must agree do not. A solver that "
@@ -140,7 +152,8 @@ Command CompareCommand() {
       TextFlag("problems", "LIST",
                "names of batten list problems, problem files, all; separated by commas"),
       TextFlag("solvers", "LIST", "solvers of batten list solvers, all; separated by commas"),
-      NumberFlag("repetitions", "N", 1.0, 1000.0), NumberFlag("starts", "N", 1.0, 100'000.0)};
+      NumberFlag("repetitions", "N", 1.0, 1000.0), NumberFlag("starts", "N", 1.0, 100'000.0),
+      NumberFlag("keep_iterates", "N", 0.0, 10'000.0)};
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
   command.flags.push_back(
       TextFlag("out", "FOLDER", "a folder",

@@ -10,6 +10,7 @@
 #include "tools/fit_summary.h"
 #include "tools/interrupts.h"
 #include "tools/output_files.h"
+#include "tools/run_records.h"
 
 namespace batten {
 namespace {
@@ -72,7 +73,7 @@ bool ComparisonSession::Prepare(std::string* error) const {
       outputs.push_back({"out", file});
     }
   }
-  return CheckOutputs(outputs, inputs, error);
+  return CheckOutputs(outputs, inputs, error) && CheckRunRecords(files_.folder, spec_, error);
 }
 
 int ComparisonSession::Run(CommandOutput* output) {
@@ -109,7 +110,11 @@ bool ComparisonSession::RunOrTakeOver(size_t index, Progress* progress, Comparis
   const CatalogueEntry& entry = contests_[index].entry;
   const bool has_figures =
       !files_.figures || (HasFigures(entry.name) && cells_.AreLast(entry, spec_));
-  if (files_.resume && has_figures && cells_.Find(entry, spec_, result)) return true;
+  if (files_.resume && has_figures && cells_.Find(entry, spec_, result) &&
+      HasRunRecords(entry, *result, spec_, files_.folder)) {
+    return true;
+  }
+  *result = {};
   if (!RunOne(index, progress, result, error)) return false;
   return files_.folder.empty() || result->interrupted || WriteProblem(index, *result, error);
 }
@@ -126,7 +131,8 @@ bool ComparisonSession::WriteProblem(size_t index, const ComparisonResult& resul
     // Those of an earlier run would show other rows.
     for (const std::string& file : FigureFiles(entry.name)) batch.Remove(file);
   }
-  return cells_.Append(entry, result, &batch, error) && batch.Commit(error);
+  return WriteRunRecords(entry, result, files_.folder, &batch, error) &&
+         cells_.Append(entry, result, &batch, error) && batch.Commit(error);
 }
 
 bool ComparisonSession::RunOne(size_t index, Progress* progress, ComparisonResult* result,
@@ -163,8 +169,9 @@ bool ComparisonSession::HasFigures(const std::string& problem) const {
 void ComparisonSession::Add(size_t index, ComparisonResult result) {
   for (ComparisonRow& row : result.rows) {
     row.problem_index = static_cast<int>(index);
-    // Traces are in the figures by now; those of many problems would fill the memory.
+    // Traces are in their files by now; those of many problems would fill the memory.
     row.run.trace = {};
+    row.run.iterates = {};
     row.excess_energies = {};
     all_.rows.push_back(std::move(row));
   }
@@ -209,7 +216,8 @@ bool ComparisonSession::WriteTables(std::string* error) const {
 std::string ComparisonSession::FileList() const {
   std::string text = "\nFiles:\n";
   for (const std::string& file : TableFiles()) text += "  " + file + "\n";
-  text += "  " + InFolder("cells.jsonl") + "\n";
+  text += "  " + InFolder("cells.jsonl") + "  (traces beside it; batten report " + files_.folder +
+          " shows all)\n";
   std::error_code ignored;
   for (const Contest& contest : contests_) {
     if (!files_.figures) break;

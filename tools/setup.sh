@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing to build Batten on Debian 12. Needs no root when nothing is missing.
-#   tools/setup.sh run|test|ci|bench    (test and bench include run, ci includes test)
+#   tools/setup.sh run|test|ci|page|bench    (test, page and bench include run, ci includes test)
 set -euo pipefail
 
 fail() {
@@ -12,14 +12,16 @@ run=(cmake g++ gnuplot-nox libceres-dev libeigen3-dev libgflags-dev libgoogle-gl
      libmd4c-dev libmd4c-html0-dev libpugixml-dev ninja-build nlohmann-json3-dev)
 test=("${run[@]}" libgmock-dev libgtest-dev)
 ci=("${test[@]}" clang-format clang-tidy git)
+page=("${run[@]}" chromium fonts-dejavu-core python3)
 bench=("${run[@]}" libbenchmark-dev liblbfgs-dev python3-scipy)
 
 case "${1-}" in
   run) wanted=("${run[@]}") ;;
   test) wanted=("${test[@]}") ;;
   ci) wanted=("${ci[@]}") ;;
+  page) wanted=("${page[@]}") ;;
   bench) wanted=("${bench[@]}") ;;
-  *) echo "setup.sh: unknown set of packages \"${1-}\"; known: run test ci bench" >&2; exit 2 ;;
+  *) echo "setup.sh: unknown set of packages \"${1-}\"; known: run test ci page bench" >&2; exit 2 ;;
 esac
 
 command -v dpkg-query >/dev/null ||

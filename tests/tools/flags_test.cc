@@ -132,7 +132,7 @@ TEST(Names, OfSolversProblemsTermsAndCommandsAreAnsweredWithTheNearest) {
   ExpectRefused(RunBatten({"compare", "--problems=rhino,rhino"}), {"twice"});
   ExpectRefused(RunBatten({"fitt"}), {"unknown command \"fitt\"", "did you mean fit?"});
   ExpectRefused(RunBatten({"--degree=3", "fit"}), {"before the command"});
-  ExpectRefused(RunBatten({}), {"no command", "fit, compare, list, help"});
+  ExpectRefused(RunBatten({}), {"no command", "fit, compare, report, list, help"});
 }
 
 TEST(Lists, TakeAllAmongOtherNames) {

@@ -109,6 +109,16 @@ TEST_F(ResumedRows, OfFreeParametersKeepTheirBasinAndShape) {
   EXPECT_EQ(ReadFile(out_ + "/table.csv"), table);  // times included
 }
 
+TEST_F(ResumedRows, WithoutTheirTraceAreComputedAgain) {
+  ASSERT_EQ(Compare("--quiet").status, 0);
+  const std::string trace = out_ + "/traces/" + Row()["key"].get<std::string>() + ".csv";
+  WriteMarked(Row());
+  ASSERT_TRUE(std::filesystem::remove(trace));
+  ASSERT_EQ(Compare("--resume").status, 0);
+  EXPECT_NE(Row()["cpu_seconds"], kMark);
+  EXPECT_TRUE(std::filesystem::exists(trace));
+}
+
 TEST_F(ResumedRows, ThatFailedTheirAuditGiveStatusThreeAgain) {
   ASSERT_EQ(Compare("--quiet").status, 0);
   json row = Row();

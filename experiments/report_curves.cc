@@ -1,0 +1,208 @@
+#include "experiments/report_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "experiments/kept_rows.h"
+#include "problems/input_file.h"
+
+namespace batten {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One run's file, looked through once.
+struct IteratesFile {
+  std::string key;
+  std::string path;
+  std::string problem;
+  std::size_t num_lines = 0;
+  std::size_t numbers_each = 0;  // coordinates of one iterate
+};
+
+struct ShownIterate {
+  double iteration = 0.0;
+  std::vector<std::vector<double>> points;
+};
+
+bool IsPoints(const OrderedJson& list) {
+  return list.is_array() && !list.empty() &&
+         std::all_of(list.begin(), list.end(), [&list](const OrderedJson& point) {
+           return point.is_array() && !point.empty() && point.size() == list[0].size() &&
+                  std::all_of(point.begin(), point.end(),
+                              [](const OrderedJson& x) { return x.is_number(); });
+         });
+}
+
+bool ParseIterate(std::string_view line, ShownIterate* iterate) {
+  const OrderedJson json = OrderedJson::parse(line, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("iteration") || !json["iteration"].is_number() ||
+      !json.contains("control_points") || !IsPoints(json["control_points"])) {
+    return false;
+  }
+  iterate->iteration = json["iteration"].get<double>();
+  iterate->points = json["control_points"].get<std::vector<std::vector<double>>>();
+  return true;
+}
+
+bool RefuseIterate(const IteratesFile& file, long number, std::string* error) {
+  *error = file.path + ":" + std::to_string(number) +
+           ": found no iterate; allowed: {\"iteration\": 0, \"control_points\": [[x, y], ...]}";
+  return false;
+}
+
+/// How many iterates there are, and how large they are.
+bool LookThrough(IteratesFile* file, std::vector<std::string>* notes, std::string* error) {
+  const auto take = [&](std::string_view line, long number, bool is_torn) {
+    if (is_torn) {
+      notes->push_back(file->path + ":" + std::to_string(number) +
+                       ": the last line is torn and was left out");
+      return true;
+    }
+    ShownIterate iterate;
+    if (file->num_lines == 0) {
+      if (!ParseIterate(line, &iterate)) return RefuseIterate(*file, number, error);
+      file->numbers_each = iterate.points.size() * iterate.points[0].size();
+    }
+    ++file->num_lines;
+    return true;
+  };
+  return ReadLines(file->path, take, error);
+}
+
+bool ReadKept(const IteratesFile& file, std::size_t most, std::vector<ShownIterate>* iterates,
+              std::string* error) {
+  const std::vector<std::size_t> kept = KeptRows(file.num_lines, most);
+  std::size_t index = 0;
+  std::size_t next = 0;
+  const auto take = [&](std::string_view line, long number, bool /*is_torn*/) {
+    if (next == kept.size() || index++ != kept[next]) return true;
+    ++next;
+    iterates->emplace_back();
+    return ParseIterate(line, &iterates->back()) || RefuseIterate(file, number, error);
+  };
+  return ReadLines(file.path, take, error);
+}
+
+/// Corner and longest side of a box around the points of the first iterate, the start.
+void Measure(const ShownIterate& start, std::vector<double>* origin, double* size) {
+  *origin = start.points[0];
+  std::vector<double> highest = start.points[0];
+  for (const std::vector<double>& point : start.points) {
+    for (std::size_t c = 0; c < point.size(); ++c) {
+      (*origin)[c] = std::min((*origin)[c], point[c]);
+      highest[c] = std::max(highest[c], point[c]);
+    }
+  }
+  *size = 0.0;
+  for (std::size_t c = 0; c < highest.size(); ++c) {
+    *size = std::max(*size, highest[c] - (*origin)[c]);
+  }
+  if (*size == 0.0) *size = 1.0;
+}
+
+std::string RunJson(const std::vector<ShownIterate>& iterates, std::size_t num_lines) {
+  std::vector<double> origin;
+  double size = 1.0;
+  Measure(iterates[0], &origin, &size);
+  const double unit = 1e-4 * size;
+  std::string iterations, points;
+  for (const ShownIterate& iterate : iterates) {
+    iterations += (iterations.empty() ? "" : ",") + OrderedJson(iterate.iteration).dump();
+    points += points.empty() ? "[" : ",[";
+    bool first = true;
+    for (const std::vector<double>& point : iterate.points) {
+      for (std::size_t c = 0; c < point.size() && c < origin.size(); ++c) {
+        const double steps = std::round((point[c] - origin[c]) / unit);
+        // What has gone so far is no curve any more, and its digits would fill the page.
+        const bool is_far = !(std::abs(steps) < 1e9);
+        points += (first ? "" : ",") +
+                  (is_far ? std::string("null") : std::to_string(static_cast<long>(steps)));
+        first = false;
+      }
+    }
+    points += "]";
+  }
+  return "{\"origin\":" + OrderedJson(origin).dump() + ",\"unit\":" + OrderedJson(unit).dump() +
+         ",\"iterates\":" + std::to_string(num_lines) + ",\"iterations\":[" + iterations +
+         "],\"points\":[" + points + "]}";
+}
+
+/// The spline and the data points of a problem.
+bool ReadSetting(const std::string& path, OrderedJson* setting, std::string* error) {
+  std::string text;
+  if (!ReadWholeFile(path, &text, error)) return false;
+  *setting = OrderedJson::parse(text, nullptr, /*allow_exceptions=*/false);
+  const OrderedJson& json = *setting;
+  const bool is_good =
+      json.is_object() && json.contains("degree") && json["degree"].is_number_unsigned() &&
+      json.contains("periodic") && json["periodic"].is_boolean() && json.contains("knots") &&
+      json["knots"].is_array() && json.contains("points") && IsPoints(json["points"]);
+  if (!is_good) *error = path + ": found no spline; allowed: degree, periodic, knots, points";
+  return is_good;
+}
+
+/// Data points are drawn as dots: no more than fill a panel.
+void ThinPoints(OrderedJson* setting) {
+  constexpr std::size_t kMostPoints = 500;
+  OrderedJson& points = (*setting)["points"];
+  if (!setting->contains("num_points")) (*setting)["num_points"] = points.size();
+  if (points.size() <= kMostPoints) return;
+  OrderedJson kept = OrderedJson::array();
+  const std::size_t step = (points.size() + kMostPoints - 1) / kMostPoints;
+  for (std::size_t i = 0; i < points.size(); i += step) kept.push_back(points[i]);
+  points = std::move(kept);
+}
+
+}  // namespace
+
+bool ReadReportCurves(const std::string& folder, const std::vector<OrderedJson>& cells,
+                      const ReportLimits& limits, std::string* json,
+                      std::vector<std::string>* notes, std::string* error) {
+  std::vector<IteratesFile> files;
+  std::size_t numbers_in_all = 0;
+  for (const OrderedJson& cell : cells) {
+    IteratesFile file;
+    file.key = TextField(cell, "key");
+    file.problem = TextField(cell, "problem");
+    file.path = (fs::path(folder) / "iterates" / (file.key + ".jsonl")).string();
+    std::error_code ignored;
+    if (file.key.empty() || !fs::is_regular_file(file.path, ignored)) continue;
+    if (!LookThrough(&file, notes, error)) return false;
+    if (file.num_lines == 0) continue;
+    numbers_in_all += file.numbers_each;
+    files.push_back(std::move(file));
+  }
+  const std::size_t most = std::clamp<std::size_t>(
+      limits.curve_numbers / std::max<std::size_t>(1, numbers_in_all), 2, limits.iterates_per_run);
+  std::string runs;
+  std::map<std::string, OrderedJson> settings;
+  std::size_t numbers = 0, left_out = 0;
+  for (const IteratesFile& file : files) {
+    numbers += file.numbers_each * std::min(most, file.num_lines);
+    if (numbers > 2 * limits.curve_numbers) {
+      ++left_out;
+      continue;
+    }
+    std::vector<ShownIterate> iterates;
+    if (!ReadKept(file, most, &iterates, error)) return false;
+    runs += (runs.empty() ? "\"" : ",\"") + file.key + "\":" + RunJson(iterates, file.num_lines);
+    const std::string path = (fs::path(folder) / "curves" / (file.problem + ".json")).string();
+    std::error_code ignored;
+    const bool is_name = file.problem.find('/') == std::string::npos;
+    if (!is_name || settings.count(file.problem) > 0 || !fs::is_regular_file(path, ignored)) {
+      continue;
+    }
+    if (!ReadSetting(path, &settings[file.problem], error)) return false;
+    ThinPoints(&settings[file.problem]);
+  }
+  if (left_out > 0) {
+    notes->push_back("iterates of " + std::to_string(left_out) + " runs are not in the page");
+  }
+  *json = "{\"runs\":{" + runs + "},\"problems\":" + OrderedJson(settings).dump() + "}";
+  return true;
+}
+
+}  // namespace batten

@@ -1,0 +1,230 @@
+#include "experiments/report_document.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "experiments/report_traces.h"
+
+namespace batten {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr char kHeader[] =
+    "iteration,energy_calls,gradient_calls,jacobian_calls,products,projections,seconds,cpu_seconds,"
+    "energy,gradient_norm,step_norm,energy_interpolation\n";
+
+class ReportDocumentTest : public ::testing::Test {
+ protected:
+  ReportDocumentTest() {
+    std::string name = ::testing::TempDir() + "/batten_XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~ReportDocumentTest() override { fs::remove_all(folder_); }
+
+  void Write(const std::string& name, const std::string& text) const {
+    fs::create_directories(fs::path(folder_ + "/" + name).parent_path());
+    std::ofstream(folder_ + "/" + name, std::ios::binary) << text;
+  }
+  bool Read() { return ReadReportDocument(folder_, limits_, &document_, &error_); }
+  json Summary() const { return json::parse(document_.summary); }
+  json Traces() const { return json::parse(document_.traces); }
+  json Curves() const { return json::parse(document_.curves); }
+
+  std::string folder_;
+  ReportLimits limits_;
+  ReportDocument document_;
+  std::string error_;
+};
+
+TEST_F(ReportDocumentTest, PutsWhatAllRowsShareInOnePlace) {
+  Write("cells.jsonl",
+        "{\"problem\": \"a\", \"solver\": \"cg\", \"mode\": \"race\", \"basin\": 1}\n"
+        "{\"problem\": \"a\", \"solver\": \"gim\", \"mode\": \"race\"}\n");
+  ASSERT_TRUE(Read()) << error_;
+  const json cells = Summary()["cells"];
+  EXPECT_EQ(cells["common"], json::parse("{\"problem\": \"a\", \"mode\": \"race\"}"));
+  EXPECT_EQ(cells["fields"], json::parse("[\"solver\", \"basin\"]"));
+  EXPECT_EQ(cells["rows"], json::parse("[[\"cg\", 1], [\"gim\", null]]"));
+  EXPECT_EQ(document_.num_cells, 2);
+}
+
+TEST_F(ReportDocumentTest, OfRowsWithOneKeyTheLastCounts) {
+  Write("cells.jsonl",
+        "{\"key\": \"1\", \"solver\": \"cg\"}\n{\"key\": \"2\", \"solver\": \"gim\"}\n"
+        "{\"key\": \"1\", \"solver\": \"newton\"}\n");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["cells"]["rows"], json::parse("[[\"1\", \"newton\"], [\"2\", \"gim\"]]"));
+}
+
+TEST_F(ReportDocumentTest, LeavesOutATornLastLineAndSaysSo) {
+  Write("cells.jsonl", "{\"solver\": \"cg\"}\n{\"solver\": \"gi");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(document_.num_cells, 1);
+  EXPECT_THAT(Summary()["notes"][0].get<std::string>(), HasSubstr("cells.jsonl:2: the last line"));
+}
+
+TEST_F(ReportDocumentTest, NamesTheLineThatIsNoRow) {
+  Write("cells.jsonl", "{\"solver\": \"cg\"}\n\nnonsense\n{\"solver\": \"gim\"}\n");
+  EXPECT_FALSE(Read());
+  EXPECT_EQ(error_,
+            folder_ + "/cells.jsonl:3: found \"nonsense\"; allowed: one JSON object a line");
+}
+
+TEST_F(ReportDocumentTest, RefusesAKeyThatLeadsOutOfTheFolder) {
+  Write("cells.jsonl", "{\"key\": \"../secret\"}\n");
+  EXPECT_FALSE(Read());
+  EXPECT_THAT(error_, HasSubstr("cells.jsonl:1: /key: found \"../secret\"; allowed: letters"));
+}
+
+TEST_F(ReportDocumentTest, RefusesFoldersWithoutResults) {
+  EXPECT_FALSE(Read());
+  EXPECT_THAT(error_, HasSubstr(folder_ + ": found no results; allowed: a folder that compare"));
+  Write("file", "");
+  EXPECT_FALSE(ReadReportDocument(folder_ + "/file", limits_, &document_, &error_));
+  EXPECT_THAT(error_, HasSubstr("/file: found a file; allowed: a folder"));
+  EXPECT_FALSE(ReadReportDocument(folder_ + "/none", limits_, &document_, &error_));
+  EXPECT_THAT(error_, HasSubstr("/none: found nothing there; allowed: a folder"));
+}
+
+// E - E* = 100 / 4^k: gaps of 4^-k, so that the target 10^-j takes ceil(j log_4 10) iterations.
+TEST_F(ReportDocumentTest, FindsTheIterationsToEachTargetInTheWholeTrace) {
+  Write("cells.jsonl", "{\"key\": \"k\", \"problem\": \"a\", \"minimum_energy\": 0}\n");
+  std::string trace = kHeader;
+  for (int k = 0; k <= 400; ++k) {
+    const double energy = 100.0 * std::pow(4.0, -k);
+    char row[200];
+    std::snprintf(row, sizeof(row), "%d,%d,%d,0,2,7,%d,%d,%.17g,1,1,%.17g\n", k, k, 2 * k, 3 * k, k,
+                  energy, energy);
+    trace += row;
+  }
+  Write("traces/k.csv", trace);
+  limits_.rows_per_trace = 5;
+  ASSERT_TRUE(Read()) << error_;
+  const json shown = Traces()["k"];
+  EXPECT_EQ(shown[0], 401);
+  EXPECT_EQ(shown[1], json::parse("[0, 25, 100, 225, 400]"));
+  EXPECT_EQ(shown[2][1], 25 + 50 + 2);  // calls of E, of the gradient, products; no projections
+  EXPECT_EQ(shown[3][1], 75);
+  for (int j = 1; j <= kNumReportTargets; ++j) {
+    const int expected = static_cast<int>(std::ceil(j * std::log(10.0) / std::log(4.0)));
+    EXPECT_EQ(shown[7][0][j - 1], expected) << j;
+    EXPECT_EQ(shown[7][2][j - 1], 3 * expected) << j;
+  }
+}
+
+TEST_F(ReportDocumentTest, HoldsRunsAgainstTheLowestEnergyWhereThereIsNoDirectAnswer) {
+  Write("cells.jsonl",
+        "{\"key\": \"a\", \"problem\": \"p\", \"energy\": 4}\n"
+        "{\"key\": \"b\", \"problem\": \"p\", \"energy\": 3}\n"
+        "{\"key\": \"c\", \"problem\": \"q\", \"energy\": 1, \"minimum_energy\": 0.5}\n");
+  Write("traces/a.csv", "iteration,energy\n0,13\n1,4\n");
+  ASSERT_TRUE(Read()) << error_;
+  const json groups = Summary()["groups"];
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0]["minimum"], 3.0);
+  EXPECT_EQ(groups[0]["direct"], false);
+  EXPECT_EQ(groups[1]["minimum"], 0.5);
+  EXPECT_EQ(groups[1]["direct"], true);
+  EXPECT_EQ(Traces()["a"][5], json::parse("[10, 1]"));
+  EXPECT_EQ(Traces()["a"][6], json::parse("[null, null]"));  // no column of |g|
+}
+
+TEST_F(ReportDocumentTest, ASkippedRunBelongsToTheProblemAsTheOthersRanIt) {
+  Write("cells.jsonl",
+        "{\"problem\": \"p\", \"stop\": \"skipped\"}\n{\"key\": \"a\", \"problem\": \"p\"}\n");
+  Write("traces/a.csv", std::string(kHeader) + "0,1,1,0,0,0,1,1,4,1,0,4\n");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["groups"].size(), 1u);
+  EXPECT_EQ(Summary()["groups"][0]["terms"], "interpolation");
+}
+
+TEST_F(ReportDocumentTest, NamesTheLineOfABrokenTrace) {
+  Write("cells.jsonl", "{\"key\": \"a\"}\n");
+  Write("traces/a.csv", "iteration,energy\n0,1\n1,two\n2,3\n");
+  EXPECT_FALSE(Read());
+  EXPECT_EQ(error_, folder_ + "/traces/a.csv:3: found \"two\"; allowed: a number");
+  Write("traces/a.csv", "iteration,energy\n0\n2,3\n");
+  EXPECT_FALSE(Read());
+  EXPECT_THAT(error_, HasSubstr("a.csv:2: found 1 fields; allowed: 2, as in the header"));
+  // Torn: its last number may have lost digits.
+  Write("traces/a.csv", "iteration,energy\n0,9\n1,3");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Traces()["a"][0], 1);
+  EXPECT_THAT(Summary()["notes"][0].get<std::string>(), HasSubstr("traces/a.csv:3: the last line"));
+}
+
+TEST_F(ReportDocumentTest, RoundsControlPointsToTheSizeOfTheStart) {
+  Write("cells.jsonl", "{\"key\": \"a\", \"problem\": \"p\"}\n");
+  Write("iterates/a.jsonl",
+        "{\"iteration\": 0, \"control_points\": [[1, 2], [3, 2], [3, 3]]}\n"
+        "{\"iteration\": 1, \"control_points\": [[1.5, 2.00011], [3, 2], [-1, 1e300]]}\n");
+  Write("curves/p.json",
+        "{\"degree\": 1, \"periodic\": false, \"knots\": [0, 0, 1, 2, 2], \"points\": [[1, 2]]}");
+  ASSERT_TRUE(Read()) << error_;
+  const json run = Curves()["runs"]["a"];
+  EXPECT_EQ(run["origin"], json::parse("[1, 2]"));
+  EXPECT_EQ(run["unit"], 2e-4);
+  EXPECT_EQ(run["iterations"], json::parse("[0, 1]"));
+  EXPECT_EQ(run["points"][0], json::parse("[0, 0, 10000, 0, 10000, 5000]"));
+  EXPECT_EQ(run["points"][1], json::parse("[2500, 1, 10000, 0, -10000, null]"));
+  EXPECT_EQ(Curves()["problems"]["p"]["degree"], 1);
+}
+
+TEST_F(ReportDocumentTest, NamesTheLineOfABrokenIterate) {
+  Write("cells.jsonl", "{\"key\": \"a\"}\n");
+  Write("iterates/a.jsonl", "{\"iteration\": 0, \"control_points\": [[1, 2], [3]]}\n");
+  EXPECT_FALSE(Read());
+  EXPECT_THAT(error_, HasSubstr("iterates/a.jsonl:1: found no iterate; allowed: "));
+}
+
+TEST_F(ReportDocumentTest, ReadsTablesPicturesAndVerdictsOfAReproduction) {
+  Write("order.csv", "# batten reproduce p order\n# tables:\nsolver,rate\ncg,0.5\n");
+  Write("order.svg", "<svg/>");
+  Write("p.md",
+        "# The paper\n\n## Verdicts\n\n| a | b | c |\n\n## Order\n\nText.\n\n"
+        "> superlinear (Sec. 3)\n\n**does not hold**: the error falls by 0.5  \nRule: last rate\n\n"
+        "![order](order.svg)\n\n*The error.*\n\nData: [order.csv](order.csv).\n");
+  ASSERT_TRUE(Read()) << error_;
+  const json summary = Summary();
+  EXPECT_EQ(summary["tables"][0]["columns"], json::parse("[\"solver\", \"rate\"]"));
+  EXPECT_EQ(summary["tables"][0]["rows"], json::parse("[[\"cg\", \"0.5\"]]"));
+  EXPECT_EQ(summary["pictures"][0]["svg"], "<svg/>");
+  const json section = summary["pages"][0]["sections"][1];
+  EXPECT_EQ(section["claims"][0]["quote"], "superlinear (Sec. 3)");
+  EXPECT_EQ(section["claims"][0]["verdict"], "does not hold");
+  EXPECT_EQ(section["claims"][0]["because"], "the error falls by 0.5");
+  EXPECT_EQ(section["claims"][0]["rule"], "last rate");
+  EXPECT_EQ(section["pictures"][0]["caption"], "The error.");
+  EXPECT_EQ(section["tables"], json::parse("[\"order.csv\"]"));
+}
+
+TEST_F(ReportDocumentTest, NamesTheRowOfATableThatIsTooShort) {
+  Write("t.csv", "a,b\n1,2\n3\n");
+  EXPECT_FALSE(Read());
+  EXPECT_THAT(error_, HasSubstr("t.csv:3: found 1 fields; allowed: 2, as in the header"));
+}
+
+TEST_F(ReportDocumentTest, KeepsTheEndOfALongLogAndReplacesBadBytes) {
+  Write("cells.jsonl", "{\"key\": \"a\"}\n");
+  Write("logs/a.log", std::string(100, 'x') + "\xff the end");
+  limits_.log_bytes = 10;
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["logs"]["a"], "[the last 10 of 109 bytes]\nx\xef\xbf\xbd the end");
+}
+
+TEST(CsvFields, FollowsRfc4180) {
+  EXPECT_THAT(CsvFields("a,\"b,c\",\"d \"\"e\"\"\","), ElementsAre("a", "b,c", "d \"e\"", ""));
+  EXPECT_THAT(CsvFields("a\r"), ElementsAre("a"));
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,219 @@
+// Put at the end of the page under test: tries what a reader does and tells the verdict to the page
+// around, which stands in a frame.
+(async () => {
+  const results = [];
+  const expect = (what, holds) => results.push((holds ? 'ok ' : 'FAILED ') + what);
+  const all = selector => [...document.querySelectorAll(selector)];
+  const settled = async () => {
+    // Once more: a plot that was being drawn may have been asked for again.
+    for (let k = 0; k < 2; ++k) await Promise.all(allPlots.map(plot => plot.isDone));
+  };
+  const drawAll = async () => {
+    for (const plot of allPlots) await plot.draw();
+    await settled();
+  };
+  const change = (node, value) => { node.value = value; node.dispatchEvent(new Event('change')); };
+  const selectOf = label => all('label').find(l => l.textContent.startsWith(label))?.querySelector('select');
+  const boxesOf = kind => all(`[data-filter="${kind}"] input[type="checkbox"]`);
+  const visible = plot => !plot.figure.closest('[hidden]');
+
+  try {
+    await drawAll();
+    expect('the page is ready', document.documentElement.dataset.ready === 'yes');
+    expect('no text of the data became an element', !document.querySelector('b, main script, img[onerror]'));
+    expect('no wider than the window', document.documentElement.scrollWidth <= innerWidth);
+    for (const details of all('details')) details.open = true;
+    expect('nor with all opened', document.documentElement.scrollWidth <= innerWidth);
+    expect('each figure says what it shows', all('figure').every(figure =>
+      figure.querySelector('figcaption').textContent.length > 20));
+    const ids = all('[id]').map(node => node.id);
+    expect('no id stands twice', new Set(ids).size === ids.length);
+    for (const link of all('#contents a')) {
+      expect(`section ${link.hash}`, document.querySelector(link.hash)?.children.length === 2);
+    }
+    if (rows.length > 0) await testRuns();
+    if (doc.pages.length > 0) testReproduction();
+  } catch (error) {
+    expect('no exception: ' + error.stack, false);
+  }
+  expect('nothing on the console: ' + said.join(' | '), said.length === 0);
+  const failed = results.filter(line => line.startsWith('FAILED')).length;
+  parent.postMessage(`${results.join('\n')}\n` +
+    `page test: ${innerWidth} px, ${systemDark.matches ? 'dark' : 'light'}: ` +
+    `${results.length - failed} passed, ${failed} failed\n`, '*');
+
+  async function testRuns() {
+    for (const plot of allPlots.filter(visible)) {
+      const box = plot.view.querySelector('canvas');
+      expect(`${plot.title}: drawn`, box !== null && box.clientWidth > 100);
+      if (!box) continue;
+      expect(`${plot.title}: not wider than its place`, box.clientWidth <= plot.view.clientWidth + 1);
+      expect(`${plot.title}: not blank`, hasInk(box));
+      expect(`${plot.title}: says what is plotted`, plot.caption.textContent.length > 60);
+      expect(`${plot.title}: data`, plot.csv().split('\n').length > 2);
+      expect(`${plot.title}: SVG`, (await plot.result.view.toSVG()).startsWith('<svg'));
+      expect(`${plot.title}: PNG`, (await plot.result.view.toImageURL('png')).startsWith('data:image/png'));
+      plot.toggleTable();
+      expect(`${plot.title}: values`, plot.table.querySelectorAll('tbody tr').length > 0);
+      plot.toggleTable();
+    }
+    await testZoom();
+    await testChoices();
+    await testFilters();
+    await testPlayer();
+    await testSchemes();
+    testSorting();
+    testButtonsHaveNames();
+  }
+
+  function hasInk(canvas) {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const colours = new Set();
+    for (let k = 0; k < data.length; k += 4) colours.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
+    return colours.size > 5;
+  }
+
+  async function testZoom() {
+    for (const plot of allPlots.filter(p => visible(p) && p.drawn.zooms)) {
+      const before = plot.domains();
+      plot.view.dispatchEvent(new KeyboardEvent('keydown', { key: '+', bubbles: true }));
+      await plot.result.view.runAsync();
+      const near = plot.domains();
+      expect(`${plot.title}: + zooms in`, near.px[0] > before.px[0] && near.px[1] < before.px[1] &&
+                                          near.py[1] < before.py[1]);
+      plot.view.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
+      await plot.result.view.runAsync();
+      expect(`${plot.title}: arrows move`, plot.domains().px[0] > near.px[0]);
+      plot.view.dispatchEvent(new KeyboardEvent('keydown', { key: '0', bubbles: true }));
+      await plot.result.view.runAsync();
+      const after = plot.domains();
+      expect(`${plot.title}: 0 shows all`, after.px[0] === before.px[0] && after.py[1] === before.py[1]);
+    }
+  }
+
+  async function testChoices() {
+    const plot = allPlots.find(p => p.title === 'Convergence');
+    for (const along of ['evaluations', 'seconds', 'cpu_seconds', 'iteration']) {
+      change(selectOf('Along'), along);
+      await drawAll();
+      const number = plot.drawn.data?.length ?? 0;
+      expect(`convergence along ${along}`, number > 0 && plot.caption.textContent.includes(kAlong[along].title));
+      const isLeftOut = rows.some(row => isOverlapped(row) && row.group === 0 && traceOf(row));
+      if (kAlong[along].isTime && isLeftOut) {
+        expect('overlapped runs are left out, and that is said', plot.caption.textContent.includes('overlapped') &&
+          plot.drawn.data.every(point => !rows.some(row => row.key === point.key && isOverlapped(row))));
+      }
+    }
+    for (const up of ['excess', 'energy', 'gradient', 'gap']) {
+      change(selectOf('Up'), up);
+      await drawAll();
+      expect(`convergence up ${up}`, plot.drawn.data.length > 0);
+    }
+    const starts = plot.drawn.data.filter(point => point.iteration === 0);
+    expect('the gap begins at 1', starts.every(point => Math.abs(point.py - 1) < 1e-5));
+  }
+
+  async function testFilters() {
+    const solver = allSolvers[0];
+    const [box] = boxesOf('solver');
+    box.click();
+    await drawAll();
+    expect('the solver filter takes its runs out', chosen.every(row => row.solver !== solver) &&
+      chosen.length === rows.filter(row => row.solver !== solver).length);
+    expect('filtered runs leave the plots', allPlots.every(plot =>
+      !plot.drawn.data || plot.drawn.data.every(row => row.solver !== solver)));
+    expect('filtered runs leave the tables',
+      all('#summary tbody tr').every(row => row.cells[0].textContent.trim() !== solver));
+    box.click();
+    const problem = boxesOf('problem')[0];
+    problem.click();
+    await drawAll();
+    expect('the problem filter', chosen.every(row => row.problem !== problem.value));
+    problem.click();
+    const term = boxesOf('term')[0];
+    term.click();
+    expect('the term filter', chosen.every(row => row.termList.some(t => t !== term.value)));
+    term.click();
+    expect('all runs are back', chosen.length === rows.length);
+    all('[data-filter="problem"] button')[1].click();
+    await drawAll();
+    expect('no run at all is no error', chosen.length === 0);
+    all('[data-filter="problem"] button')[0].click();
+    await drawAll();
+  }
+
+  async function testPlayer() {
+    const plot = allPlots.find(p => p.title === 'Curves side by side');
+    if (!plot) return;
+    const button = text => all('#player button').find(b => b.textContent === text);
+    button('First').click();
+    await settled();
+    const first = JSON.stringify(plot.drawn.data);
+    expect('the player begins at iteration 0', plot.drawn.data.every(row => row.iteration === 0));
+    button('Next').click();
+    expect('it steps', JSON.stringify(plot.drawn.data) !== first);
+    button('Last').click();
+    expect('it goes to the end', Number(all('#player input[type="range"]')[0].value) > 0);
+    const curve = plot.drawn.data.filter(row => row.kind === 'curve');
+    expect('curves are drawn', curve.length > 0 && curve.every(row => Number.isFinite(row.px)));
+    const data = plot.drawn.data.filter(row => row.kind === 'point' && row.solver === curve[0].solver);
+    const size = Math.max(...data.map(p => p.px)) - Math.min(...data.map(p => p.px));
+    const best = curve.filter(row => rows.some(r => r.solver === row.solver && r.verdict === 'reached'));
+    const far = Math.max(...data.map(point => Math.min(...best.map(row =>
+      Math.hypot(row.px - point.px, row.py - point.py)))));
+    expect('the last curves pass by the data', far < 0.05 * size);
+  }
+
+  async function testSchemes() {
+    for (const wanted of ['light', 'dark', 'system']) {
+      document.getElementById('scheme').click();
+      await drawAll();
+      if (wanted === 'system') continue;
+      expect(`${wanted} scheme`, scheme === wanted && document.documentElement.dataset.scheme === wanted);
+      const back = getComputedStyle(document.body).backgroundColor, text = getComputedStyle(document.body).color;
+      expect(`${wanted} scheme: contrast of text`, contrast(back, text) >= 7);
+      expect(`${wanted} scheme: contrast of lines`, kPalettes[scheme].every(colour =>
+        contrast(back, colour) >= 2.5));
+    }
+  }
+  function contrast(a, b) {  // WCAG 2.1
+    const light = colour => {
+      const probe = element('span', { style: `color: ${colour}` });
+      document.body.append(probe);
+      const parts = getComputedStyle(probe).color.match(/[\d.]+/g).slice(0, 3).map(Number);
+      probe.remove();
+      const [r, g, b] = parts.map(v => v / 255).map(v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+      return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const [low, high] = [light(a), light(b)].sort((x, y) => x - y);
+    return (high + 0.05) / (low + 0.05);
+  }
+
+  function testSorting() {
+    const table = document.querySelector('#runs table');
+    const place = [...table.tHead.rows[0].cells].findIndex(cell => cell.textContent === 'iterations');
+    const header = table.tHead.rows[0].cells[place];
+    for (const sign of [1, -1]) {
+      header.querySelector('button').click();
+      const values = [...table.tBodies[0].rows].map(row => row.cells[place].textContent)
+        .filter(text => text !== '–').map(Number);
+      expect(`runs sorted by iterations, ${header.getAttribute('aria-sort')}`,
+        values.length > 1 && values.every((v, k) => k === 0 || sign * (v - values[k - 1]) >= 0));
+    }
+  }
+
+  function testButtonsHaveNames() {
+    expect('each button and field has a name', all('button, select, input').every(node =>
+      (node.textContent.trim() || node.getAttribute('aria-label') || node.closest('label')?.textContent.trim())));
+    expect('nothing takes the focus out of order', all('[tabindex]').every(node => node.tabIndex <= 0));
+  }
+
+  function testReproduction() {
+    expect('each claim has its verdict', all('#verdicts tbody tr').length ===
+      doc.pages[0].sections.reduce((sum, section) => sum + section.claims.length, 0));
+    expect('verdicts are those of the page', doc.pages[0].sections.every(section => section.claims.every(claim =>
+      ['holds', 'holds in part', 'does not hold', 'undecided'].includes(claim.verdict) && claim.rule !== '')));
+    expect('pictures are put in', all('img').every(image => image.src.startsWith('data:')));
+    expect('tables are shown', all('#experiments table, #tables table').length >= doc.tables.length);
+  }
+})();

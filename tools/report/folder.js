@@ -1,0 +1,94 @@
+// The sections that are not made of runs: verdicts on claims, pictures, tables, the build.
+
+function addFolderSections() {
+  const pictures = new Map(doc.pictures.map(picture => [picture.name, picture]));
+  const tables = new Map(doc.tables.map(table => [table.name, table]));
+  for (const page of doc.pages) addPage(page, pictures, tables);
+  if (pictures.size > 0) {
+    addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
+      pictureOf(picture, `As drawn when the folder was written; what is plotted stands in ` +
+                         `${picture.name.replace(/\.svg$/, '.dat')} beside it.`))));
+  }
+  if (tables.size > 0) {
+    addSection('Tables', element('div', {}, ...[...tables.values()].map(table =>
+      element('details', { open: tables.size <= 3 }, element('summary', {}, table.name),
+              folderTable(table)))));
+  }
+  addBuild();
+}
+
+function addPage(page, pictures, tables) {
+  const sections = page.sections.filter(section => section.claims.length > 0);
+  const list = sections.flatMap(section =>
+    section.claims.map(claim => ({ experiment: section.title, ...claim })));
+  const verdict = row => element('span', {
+    class: 'badge ' + (row.verdict === 'holds' ? 'good' : row.verdict === 'does not hold' ? 'bad' : ''),
+  }, row.verdict);
+  const columns = [{ field: 'experiment', title: 'experiment', text: true },
+                   { field: 'quote', title: 'claim', text: true },
+                   { field: 'verdict', title: 'verdict', text: true, cell: verdict },
+                   { field: 'because', title: 'because', text: true }];
+  const of = doc.pages.length > 1 ? `: ${page.title}` : '';
+  addSection('Verdicts' + of, element('div', {}, element('p', {}, page.title),
+                                 sortableTable(columns, list, { name: 'verdicts' + of })));
+  const experiments = sections.map(section => element('details', {},
+    element('summary', {}, section.title),
+    ...section.claims.flatMap(claim => [
+      element('blockquote', {}, claim.quote),
+      element('p', {}, verdict(claim), ': ' + claim.because),
+      element('p', { class: 'quiet' }, 'Rule: ' + claim.rule)]),
+    ...section.pictures.filter(({ name }) => pictures.has(name)).map(({ name, caption }) => {
+      const figure = pictureOf(pictures.get(name), caption);
+      pictures.delete(name);
+      return figure;
+    }),
+    ...section.tables.filter(name => tables.has(name)).flatMap(name => {
+      const table = tables.get(name);
+      tables.delete(name);
+      return [element('h3', {}, name), folderTable(table)];
+    })));
+  addSection('Experiments' + of, element('div', {}, ...experiments));
+}
+
+// As an image: scripts in a picture do not run.
+function pictureOf(picture, caption = '') {
+  const source = 'data:image/svg+xml;charset=utf-8,' + encodeURIComponent(picture.svg);
+  const save = element('button', { type: 'button', onclick: () =>
+    download(picture.name, picture.svg, 'image/svg+xml') }, 'SVG');
+  const savePng = element('button', { type: 'button', onclick: event => {
+    const image = event.target.closest('figure').querySelector('img');
+    const canvas = element('canvas', { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
+    const context = canvas.getContext('2d');
+    context.fillStyle = '#fff';
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    download(picture.name.replace(/\.svg$/, '.png'), canvas.toDataURL('image/png'), 'image/png');
+  } }, 'PNG');
+  return element('figure', {}, element('h3', {}, picture.name),
+    element('img', { src: source, alt: caption || `Picture ${picture.name}`, loading: 'lazy' }),
+    element('div', { class: 'row' }, save, savePng), element('figcaption', {}, caption));
+}
+
+function folderTable(table) {
+  const columns = table.columns.map((title, k) => ({ field: String(k), title }));
+  const list = table.rows.map(values => ({ ...values }));
+  const node = sortableTable(columns, list, { name: table.name.replace(/\.csv$/, ''), page: 50 });
+  if (table.rows.length < table.num_rows) {
+    node.append(element('p', { class: 'quiet' },
+      `The first ${table.rows.length} of ${table.num_rows} rows; the folder has them all.`));
+  }
+  return node;
+}
+
+function addBuild() {
+  const fields = ['mode', 'gradient_tolerance', 'max_iterations', 'max_seconds', 'native_step',
+                  'native_gradient', 'seed', 'threads', 'compile', 'version', 'commit', 'compiler'];
+  const seen = Object.fromEntries(fields.map(field =>
+    [field, [...new Set(rows.map(row => row[field]).filter(value => value !== undefined).map(textOf))]
+      .join(' | ')]).filter(([, text]) => text !== ''));
+  if (rows.length === 0 && !doc.manifest) return;
+  addSection('How it was run', element('div', {},
+    rows.length > 0 ? definitions(seen) : null,
+    doc.manifest ? element('details', {}, element('summary', {}, 'manifest.json'),
+      element('pre', { tabindex: 0 }, JSON.stringify(doc.manifest, null, 2))) : null));
+}

@@ -1,0 +1,214 @@
+// The sections of the page, but the player.
+
+// A section whose content is made anew from the rows that pass the filters; only once it is seen.
+function addTableSection(title, fill) {
+  const box = element('div');
+  addSection(title, box, () => box.replaceChildren(...[fill()].flat().filter(Boolean)));
+}
+const verdictWords = { reached: 'reached', failed: 'failed', refuted: 'refuted', skipped: 'skipped' };
+const verdictCell = row => element('span', {
+  class: row.verdict === 'reached' ? 'good' : row.verdict === 'skipped' ? null : 'bad',
+}, verdictWords[row.verdict]);
+
+function addRunSections() {
+  addTableSection('Summary', summaryContent);
+  addConvergence();
+  addProfiles();
+  addPlayer();
+  addTableSection('Runs', runsContent);
+  addTableSection('Failures', failuresContent);
+  addTableSection('Claim and audit', auditContent);
+  addTableSection('Options that ran', optionsContent);
+}
+
+function summaryContent() {
+  const count = (list, verdict) => list.filter(row => row.verdict === verdict).length;
+  const list = allSolvers.map(solver => {
+    const runs = chosen.filter(row => row.solver === solver);
+    const good = runs.filter(row => row.verdict === 'reached');
+    const timed = good.filter(row => !isOverlapped(row));
+    return { solver, runs: runs.length, reached: count(runs, 'reached'),
+             failed: count(runs, 'failed'), refuted: count(runs, 'refuted'),
+             skipped: count(runs, 'skipped'), iterations: median(good.map(row => row.iterations)),
+             evaluations: median(good.map(row => row.evaluations)),
+             seconds: median(timed.map(row => row.seconds)) };
+  }).filter(row => row.runs > 0);
+  const columns = [
+    { field: 'solver', title: 'solver', text: true,
+      cell: row => element('span', {}, swatch(row.solver), ' ' + row.solver) },
+    { field: 'runs', title: 'runs' }, { field: 'reached', title: 'reached' },
+    { field: 'failed', title: 'failed' }, { field: 'refuted', title: 'refuted' },
+    { field: 'skipped', title: 'skipped' }, { field: 'iterations', title: 'iterations, median' },
+    { field: 'evaluations', title: 'evaluations, median' },
+    { field: 'seconds', title: 'time (s), median' }];
+  const numOverlapped = chosen.filter(isOverlapped).length;
+  const caption = 'Reached: the run came to what it was asked for and the audit does not refute it. ' +
+    'Failed: it did not, or hit a limit. Refuted: it claims what the audit or the direct answer ' +
+    'contradicts. Skipped: the solver does not apply. Medians are those of the runs that reached; ' +
+    'evaluations are calls of E, its gradient and Jacobian, and products.' +
+    (numOverlapped > 0 ? ` Times leave out ${counted(numOverlapped, 'run')} that overlapped.` : '');
+  return [sortableTable(columns, list, { name: 'summary' }),
+          element('p', { class: 'quiet' }, caption)];
+}
+
+function addConvergence() {
+  const hasTraces = rows.some(traceOf);
+  const settings = { group: 0, along: 'iteration', up: 'gap', logX: true };
+  const plot = convergencePlot(settings);
+  const end = endPlot(settings);
+  const changed = () => { plot.refresh(); end.refresh(); };
+  const set = name => value => { settings[name] = value; changed(); };
+  const problem = select('Problem', doc.groups.map((_, k) => [String(k), groupName(k)]), '0',
+                         value => { settings.group = Number(value); plot.refresh(); });
+  const controls = element('div', { class: 'row' }, problem,
+    select('Along', [['iteration', 'iterations'], ['evaluations', 'evaluations'],
+                     ['seconds', 'wall time'], ['cpu_seconds', 'processor time']],
+           settings.along, set('along')),
+    select('Up', [['gap', 'gap'], ['excess', 'E − E*'], ['energy', 'E'], ['gradient', '|g|']],
+           settings.up, set('up')),
+    check('Logarithmic along', true, set('logX')));
+  const hint = 'Drag to move, Ctrl and wheel or the buttons to zoom, double click to see all. ' +
+    'With the keyboard: focus a plot, then + − 0 and the arrows; Values lists what is drawn.';
+  addSection('Convergence', element('div', {},
+    hasTraces ? null : element('p', {}, 'The folder has no traces (traces/KEY.csv).'),
+    controls, element('p', { class: 'quiet' }, hint), plot.figure, end.figure),
+  () => {
+    const node = problem.querySelector('select');
+    const passing = new Set(chosen.map(row => String(row.group)));
+    for (const option of node.options) option.hidden = option.disabled = !passing.has(option.value);
+    if (passing.size > 0 && !passing.has(node.value)) {
+      node.value = [...passing][0];
+      settings.group = Number(node.value);
+    }
+    changed();
+  });
+}
+
+function addProfiles() {
+  const hasTraces = rows.some(traceOf);
+  const settings = { measure: 'iteration', target: hasTraces ? 1e-6 : 'stop' };
+  const profile = profilePlot(settings), runtime = runtimePlot(settings);
+  const refresh = () => { profile.refresh(); runtime.refresh(); };
+  const targets = [['stop', 'what the run was asked for'],
+                   ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t.toExponential()}`]) : [])];
+  const controls = element('div', { class: 'row' },
+    select('Measured by', [['iteration', 'iterations'], ['evaluations', 'evaluations'],
+                           ['seconds', 'wall time'],
+                           ...(hasTraces ? [['cpu_seconds', 'processor time']] : [])],
+           settings.measure, value => { settings.measure = value; refresh(); }),
+    select('Solved means', targets, String(settings.target), value => {
+      settings.target = value === 'stop' ? value : Number(value);
+      refresh();
+    }));
+  const few = element('p', {}, 'Profiles need two problems or more.');
+  const box = element('div', {}, controls, element('div', { class: 'plots' }, profile.figure,
+                      hasTraces ? runtime.figure : null));
+  addSection('Profiles', element('div', {}, few, box), () => {
+    const isMany = new Set(chosen.map(row => row.group)).size >= 2;
+    few.hidden = isMany;
+    box.hidden = !isMany;
+    if (isMany) refresh();
+  });
+}
+
+const kRunColumns = [
+  { field: 'problem', title: 'problem', text: true }, { field: 'solver', title: 'solver', text: true },
+  { field: 'terms', title: 'terms', text: true }, { field: 'parameter_kind', title: 'parameters', text: true },
+  { field: 'verdict', title: 'verdict', text: true, cell: verdictCell },
+  { field: 'stop', title: 'stop', text: true }, { field: 'iterations', title: 'iterations' },
+  { field: 'evaluations', title: 'evaluations' }, { field: 'seconds', title: 'time (s)' },
+  { field: 'energy', title: 'E (unit of the data, squared)', digits: 6 },
+  { field: 'energy_at_foot_points', title: 'E at foot points (unit of the data, squared)', digits: 6 },
+  { field: 'gap', title: 'gap, no unit' }, { field: 'gradient_norm', title: '|g| (unit of the data)' },
+  { field: 'rms', title: 'rms distance (unit of the data)' },
+  { field: 'max', title: 'largest distance (unit of the data)' },
+  { field: 'basin', title: 'basin', text: true }, { field: 'length', title: 'length (unit of the data)' },
+  { field: 'turning', title: 'turning (rad)' }, { field: 'num_free_loops', title: 'free loops' },
+];
+function runsContent() {
+  const used = kRunColumns.filter(column =>
+    chosen.some(row => row[column.field] !== null && row[column.field] !== undefined));
+  const details = element('div', { 'aria-live': 'polite' });
+  const showRow = row => {
+    const { termList, verdict, index, group, instanceId, options, ...fields } = row;
+    const { notes, ...rest } = fields;
+    details.replaceChildren(element('h3', { tabindex: -1 }, `${row.problem}: ${row.solver}`),
+      element('p', {}, 'Options that really ran:'), definitions(options ?? {}),
+      (notes ?? []).length > 0 ? element('p', {}, 'Notes of the solver:') : '',
+      definitions(Object.fromEntries((Array.isArray(notes) ? notes : []).map(note => [note.name, note.value]))),
+      element('p', {}, 'All fields (docs/formats.md):'), definitions(rest));
+    details.firstChild.focus();
+  };
+  const columns = [...used, { field: 'index', title: 'all', text: true, cell: row =>
+    element('button', { type: 'button', onclick: () => showRow(row),
+                        'aria-label': `All of ${row.problem}, ${row.solver}` }, 'All') }];
+  return [sortableTable(columns, chosen, { name: 'runs', page: 20 }), details];
+}
+
+function failuresContent() {
+  const list = chosen.filter(row => row.verdict === 'failed' || row.verdict === 'refuted');
+  const skipped = chosen.filter(row => row.verdict === 'skipped');
+  if (list.length + skipped.length === 0) return element('p', {}, 'None of these runs failed.');
+  const logCell = row => {
+    const log = doc.logs[row.key];
+    if (log === undefined) return '–';
+    return element('details', {}, element('summary', {}, 'log'), element('pre', { tabindex: 0 }, log));
+  };
+  const columns = [
+    { field: 'problem', title: 'problem', text: true }, { field: 'solver', title: 'solver', text: true },
+    { field: 'verdict', title: 'verdict', text: true, cell: verdictCell },
+    { field: 'stop', title: 'stop', text: true },
+    { field: 'why', title: 'message', text: true }, { field: 'key', title: 'log', text: true, cell: logCell }];
+  const why = row => [row.message, row.failure, row.disagreement].filter(Boolean).map(textOf).join('; ');
+  const withWhy = some => some.map(row => ({ ...row, why: why(row) }));
+  return [
+    list.length > 0 ? sortableTable(columns, withWhy(list), { name: 'failures', page: 20 })
+                    : element('p', {}, 'None of these runs failed.'),
+    skipped.length > 0 ? element('details', {},
+      element('summary', {}, `${counted(skipped.length, 'run')} skipped: the solver does not apply`),
+      sortableTable(columns, withWhy(skipped), { name: 'skipped', page: 30 })) : null];
+}
+
+function auditContent() {
+  const audited = chosen.filter(row => typeof row.verified === 'boolean').map(row => ({
+    ...row,
+    energy_off: Math.abs(row.energy - row.audit_energy) / Math.abs(row.audit_energy),
+    says: row.verified ? 'verified' : 'refuted',
+  }));
+  const failed = audited.filter(row => !row.verified).length;
+  const disagree = chosen.filter(row => row.disagreement).length;
+  const unaudited = chosen.length - audited.length;
+  const text = `${counted(audited.length, 'run')} audited, ${failed} of them refuted; ` +
+    `${disagree} claim a minimum that is not the direct answer; ${unaudited} not audited ` +
+    '(skipped, or with terms that the audit does not know). The audit is a plain evaluator that ' +
+    'shares no code with the solvers.';
+  const columns = [
+    { field: 'problem', title: 'problem', text: true }, { field: 'solver', title: 'solver', text: true },
+    { field: 'stop', title: 'claim (stop)', text: true },
+    { field: 'says', title: 'audit', text: true, cell: row =>
+      element('span', { class: row.verified ? 'good' : 'bad' }, row.says) },
+    { field: 'energy', title: 'E claimed (unit of the data, squared)', digits: 8 },
+    { field: 'audit_energy', title: 'E audited (unit of the data, squared)', digits: 8 },
+    { field: 'energy_off', title: 'difference over E, no unit', digits: 2 },
+    { field: 'gradient_norm', title: '|g| claimed (unit of the data)' },
+    { field: 'audit_gradient_norm', title: '|g| audited (unit of the data)' },
+    { field: 'gradient_floor', title: 'rounding floor of |g| (unit of the data)' },
+    { field: 'failure', title: 'why', text: true }];
+  return [element('p', {}, text),
+          audited.length > 0 ? sortableTable(columns, audited, { name: 'audit', page: 20 }) : null];
+}
+
+function optionsContent() {
+  const sets = new Map();
+  for (const row of chosen) {
+    if (row.verdict === 'skipped' && Object.keys(row.options ?? {}).length === 0) continue;
+    const text = Object.entries(row.options ?? {}).map(([name, value]) => `${name}=${textOf(value)}`);
+    const key = JSON.stringify([row.solver, text]);
+    if (!sets.has(key)) sets.set(key, { solver: row.solver, options: text.join('  '), runs: 0 });
+    sets.get(key).runs += 1;
+  }
+  const columns = [{ field: 'solver', title: 'solver as asked for', text: true },
+                   { field: 'options', title: 'options as really used', text: true },
+                   { field: 'runs', title: 'runs' }];
+  return sortableTable(columns, [...sets.values()], { name: 'options', page: 60 });
+}
