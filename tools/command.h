@@ -43,6 +43,8 @@ Command CompareCommand();    // compare_command.cc
 Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
 Command ListCommand();       // list_command.cc
+Command CheckCommand();      // check_command.cc
+Command NewCommand();        // new_command.cc
 Command HelpCommand();       // help_command.cc
 
 std::string GeneralHelp();
