@@ -4,6 +4,7 @@
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
 #include "experiments/comparison_tables.h"
+#include "solvers/plugin_loader.h"
 
 namespace batten {
 namespace {
@@ -85,6 +86,9 @@ void AddConditions(const RunSpec& spec, Json* json) {
 void AddBuild(Json* json) {
   (*json)["version"] = kVersion;
   (*json)["commit"] = kGitCommit;
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    (*json)["plugins"].push_back({{"path", plugin.path}, {"sha256", plugin.sha256}});
+  }
   (*json)["compiler"] = kCompiler;
   (*json)["flags"] = kFlags;
 }

@@ -6,6 +6,7 @@
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
 #include "experiments/fit_report.h"
+#include "solvers/plugin_loader.h"
 
 namespace batten {
 namespace {
@@ -128,6 +129,9 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
   }
   json["version"] = kVersion;
   json["commit"] = kGitCommit;
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    json["plugins"].push_back({{"path", plugin.path}, {"sha256", plugin.sha256}});
+  }
   return json;
 }
 

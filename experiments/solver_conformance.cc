@@ -75,7 +75,7 @@ CheckVerdict ChecksDescription(const std::string& registered) {
   for (const OptionInfo& option : info.options) {
     if (option.help.empty()) return Failed("option " + option.name + " has no help");
   }
-  return {true, std::to_string(info.options.size()) + " options"};
+  return {true, "options: " + std::to_string(info.options.size())};
 }
 
 /// Each option at its default, at both ends of its range and at each word.

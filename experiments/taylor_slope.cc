@@ -11,6 +11,7 @@ TaylorSlope MeasureTaylorSlope(const std::function<double(double)>& remainder, d
   constexpr int kLongest = 4;
   constexpr int kShortest = 16;
   constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kMost = 5;
   TaylorSlope result;
   result.noise = noise;
   result.slope = std::numeric_limits<double>::quiet_NaN();
@@ -27,6 +28,7 @@ TaylorSlope MeasureTaylorSlope(const std::function<double(double)>& remainder, d
     if (size > noise) points.emplace_back(std::log(h), std::log(size));
   }
   if (points.size() < kFewest) return result;
+  if (points.size() > kMost) points.erase(points.begin(), points.end() - kMost);
   double mean_h = 0.0, mean_r = 0.0;
   for (const auto& [h, r] : points) {
     mean_h += h / static_cast<double>(points.size());

@@ -7,8 +7,9 @@ namespace batten {
 
 /// How a remainder falls with the step: |R(h)| ~ h^slope.
 struct TaylorSlope {
-  /// Least-squares slope of log |R| over log h; NaN where fewer than three remainders stand above
-  /// the rounding.
+  /// Least-squares slope of log |R| over log h at the five shortest steps whose remainder stands
+  /// above the rounding: where a derivative that is wrong by little shows most. NaN: fewer than
+  /// three of them.
   double slope = 0.0;
   double largest = 0.0;  ///< Remainder at the longest step.
   double noise = 0.0;

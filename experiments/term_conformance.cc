@@ -106,7 +106,7 @@ CheckVerdict ChecksDescription(const std::string& name) {
       if (common.name == option.name) return Failed("option " + option.name + " is every term's");
     }
   }
-  return {true, std::to_string(info.options.size()) + " options"};
+  return {true, "options: " + std::to_string(info.options.size())};
 }
 
 CheckVerdict ChecksOptions(const std::string& name) {
