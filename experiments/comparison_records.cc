@@ -87,7 +87,7 @@ void AddBuild(Json* json) {
   (*json)["version"] = kVersion;
   (*json)["commit"] = kGitCommit;
   for (const LoadedPlugin& plugin : LoadedPlugins()) {
-    (*json)["plugins"].push_back({{"path", plugin.path}, {"sha256", plugin.sha256}});
+    (*json)["plugins"][plugin.path] = plugin.sha256;
   }
   (*json)["compiler"] = kCompiler;
   (*json)["flags"] = kFlags;

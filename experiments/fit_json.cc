@@ -130,7 +130,7 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
   json["version"] = kVersion;
   json["commit"] = kGitCommit;
   for (const LoadedPlugin& plugin : LoadedPlugins()) {
-    json["plugins"].push_back({{"path", plugin.path}, {"sha256", plugin.sha256}});
+    json["plugins"][plugin.path] = plugin.sha256;
   }
   return json;
 }

@@ -2,11 +2,14 @@
 
 #include <cxxabi.h>
 #include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
 #include <sys/types.h>
 // After sys/types.h, whose types it uses.
 #include <sha256.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -31,11 +34,27 @@ std::string Sha256OfFile(const std::string& path) {
   return SHA256File(path.c_str(), digits) == nullptr ? "" : digits;
 }
 
-bool IsSharedObject(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  char begin[4] = {0, 0, 0, 0};
-  file.read(begin, sizeof(begin));
-  return file.gcount() == sizeof(begin) && std::memcmp(begin, "\177ELF", sizeof(begin)) == 0;
+/// Empty: `path` begins as a shared object of this machine does, and holds all that its program
+/// headers say. The loader does not look: it maps what is missing, and the first touch is fatal.
+std::string WhyNoSharedObject(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const auto size = static_cast<std::uint64_t>(file.tellg());
+  ElfW(Ehdr) header = {};
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(&header), sizeof(header));
+  const bool is_elf = file.good() && std::memcmp(header.e_ident, ELFMAG, SELFMAG) == 0;
+  if (!is_elf || header.e_type != ET_DYN || header.e_phentsize != sizeof(ElfW(Phdr))) {
+    return "is no shared object; allowed: " + std::string(kAllowed);
+  }
+  for (int i = 0; i < header.e_phnum; ++i) {
+    ElfW(Phdr) part = {};
+    file.seekg(static_cast<std::streamoff>(header.e_phoff + i * sizeof(part)));
+    file.read(reinterpret_cast<char*>(&part), sizeof(part));
+    if (!file.good() || part.p_offset > size || part.p_filesz > size - part.p_offset) {
+      return "is cut off: a shared object of which the end is missing";
+    }
+  }
+  return "";
 }
 
 std::string Demangled(const std::string& symbol) {
@@ -99,9 +118,8 @@ std::string Register(void* library, const std::string& path, bool is_c,
 /// that points into it.
 std::string LoadOne(LoadedPlugin* plugin) {
   const std::string& path = plugin->path;
-  if (!IsSharedObject(path)) {
-    return "is no shared object; allowed: " + std::string(kAllowed);
-  }
+  const std::string broken = WhyNoSharedObject(path);
+  if (!broken.empty()) return broken;
   plugin->sha256 = Sha256OfFile(path);
   if (plugin->sha256.empty()) return "cannot be read";
   // NOW: what is missing is to be said here, not in the middle of a run.

@@ -129,6 +129,7 @@ double CpuSeconds(const rusage& usage) {
 
 void Explain(int status, const rusage& usage, const ProcessLimits& limits, int errors,
              ProcessEnd* end) {
+  if (end->kind == ProcessEnd::Kind::kInterrupted) return;
   const std::string last = LastLine(errors);
   const std::string said = last.empty() ? "" : ": " + last;
   if (end->kind == ProcessEnd::Kind::kTimedOut) {

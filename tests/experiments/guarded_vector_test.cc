@@ -16,12 +16,12 @@ double Read(const Eigen::VectorXd& vector, Eigen::Index place) {
 }
 
 /// Each in a process of its own: a GuardedVector changes how memory is handed out.
-#define EXPECT_CHILD_SAYS_YES(statement)  \
-  EXPECT_EXIT(                            \
-      {                                   \
-        statement;                        \
-        std::_Exit(yes ? 0 : 1);          \
-      },                                  \
+#define EXPECT_CHILD_SAYS_YES(statement) \
+  EXPECT_EXIT(                           \
+      {                                  \
+        statement;                       \
+        std::_Exit(yes ? 0 : 1);         \
+      },                                 \
       ::testing::ExitedWithCode(0), "")
 
 TEST(GuardedVector, IsAVectorLikeAnother) {

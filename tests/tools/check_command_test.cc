@@ -141,8 +141,7 @@ TEST(Check, IsInterrupted) {
   const TemporaryFolder folder;
   Program program({"check", Plugin("fault_sleeper"), "--quiet", "--seconds_per_check=100",
                    "--badge=" + (folder / "badge.svg")});
-  program.WaitUntilBusy(0.02);
-  usleep(300000);
+  usleep(500000);  // most of it, it waits for the plugin to wake up
   program.Send(SIGINT);
   EXPECT_EQ(program.Wait().status, 130);
   EXPECT_THAT(folder.Names(), ::testing::IsEmpty());
