@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -253,8 +254,14 @@ CheckVerdict ChecksCeres(const std::string& name) {
   return ForEachProblem(name, OptionTexts(name), &WhyCeresDiffers);
 }
 
+std::uint64_t BitsOf(double number) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &number, sizeof(bits));
+  return bits;
+}
+
 bool SameBits(const ValueAt& a, const ValueAt& b) {
-  return a.status == b.status && std::memcmp(&a.energy, &b.energy, sizeof(double)) == 0 &&
+  return a.status == b.status && BitsOf(a.energy) == BitsOf(b.energy) &&
          a.gradient.size() == b.gradient.size() &&
          std::memcmp(a.gradient.data(), b.gradient.data(),
                      sizeof(double) * static_cast<std::size_t>(a.gradient.size())) == 0;

@@ -4,7 +4,7 @@
 #ifndef BATTEN_C_H_
 #define BATTEN_C_H_
 
-#include <stdint.h>
+#include <stdint.h> /* NOLINT(modernize-deprecated-headers): this is C */
 
 #ifdef __cplusplus
 extern "C" {
@@ -110,6 +110,7 @@ typedef struct batten_host {
  *   BATTEN_C_PLUGIN(host) { host->add_solver(host->self, &my_solver); } */
 BATTEN_EXPORT const batten_card* batten_plugin_card(void);
 BATTEN_EXPORT void batten_plugin_register_c(const batten_host* host);
+/* NOLINTBEGIN(bugprone-macro-parentheses): the name of a parameter */
 #define BATTEN_C_PLUGIN(host)                                                       \
   const batten_card* batten_plugin_card(void) {                                     \
     static const batten_card card = {                                               \
@@ -117,6 +118,7 @@ BATTEN_EXPORT void batten_plugin_register_c(const batten_host* host);
     return &card;                                                                   \
   }                                                                                 \
   void batten_plugin_register_c(const batten_host* host)
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 #ifdef __cplusplus
 }

@@ -65,6 +65,7 @@ constexpr std::uint64_t ClassLayout() {
   return layout;
 }
 
+// One for each file, on purpose. NOLINTNEXTLINE(misc-definitions-in-headers)
 constexpr batten_card kThisCard = {
     sizeof(batten_card),
     BATTEN_API_LEVEL,

@@ -118,7 +118,7 @@ std::string Register(void* library, const std::string& path, bool is_c,
 /// that points into it.
 std::string LoadOne(LoadedPlugin* plugin) {
   const std::string& path = plugin->path;
-  const std::string broken = WhyNoSharedObject(path);
+  std::string broken = WhyNoSharedObject(path);
   if (!broken.empty()) return broken;
   plugin->sha256 = Sha256OfFile(path);
   if (plugin->sha256.empty()) return "cannot be read";

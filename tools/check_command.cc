@@ -146,7 +146,8 @@ bool RunChecks(const LoadedPlugin& plugin, std::vector<CheckRow>* rows) {
   const std::vector<NamedCheck> checks = ChecksOf(plugin);
   Progress progress(FLAGS_quiet);
   for (std::size_t i = 0; i < checks.size(); ++i) {
-    const auto& [subject, check] = checks[i];
+    const PluginName& subject = checks[i].subject;
+    const ConformanceCheck& check = checks[i].check;
     progress.Show(static_cast<double>(i) / static_cast<double>(checks.size()),
                   subject.name + ": " + check.name);
     const ProcessEnd end = RunLimited(
