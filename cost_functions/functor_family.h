@@ -17,8 +17,8 @@ namespace batten {
 
 /// Spreads one residual functor over its sites. A functor is a small copyable struct:
 ///
-///   static TermInfo Info();                        // name, summary, source, options, affine
-///   static constexpr bool kAffine;                 // as TermInfo::affine
+///   static TermInfo Info();                        // name, summary, source, options
+///   static constexpr bool kAffine;                 // what TermInfo::affine becomes
 ///   static constexpr int kDerivatives;             // highest derivative of C it asks for
 ///   static constexpr int NumResiduals(int dimension);   // at most 16
 ///   explicit Functor(const OptionValues& options);
@@ -226,7 +226,11 @@ class FunctorFamily final : public BlockFamily, private RowSource {
 template <typename Functor>
 class FunctorTerm final : public Term {
  public:
-  TermInfo Info() const override { return Functor::Info(); }
+  TermInfo Info() const override {
+    TermInfo info = Functor::Info();
+    info.affine = Functor::kAffine;
+    return info;
+  }
   std::unique_ptr<BlockFamily> MakeFamily(const FitSetting& setting, const OptionValues& options,
                                           std::string* /*error*/) const override {
     return std::make_unique<FunctorFamily<Functor>>(

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -18,6 +19,7 @@
 #include "experiments/comparison_records.h"
 #include "experiments/content_hash.h"
 #include "problems/input_file.h"
+#include "solvers/plugin_loader.h"
 
 namespace batten {
 namespace {
@@ -122,6 +124,13 @@ bool WriteManifest(const BenchSuite& suite, const BenchSession& session, const s
   json["compiler"] = kCompiler;
   json["flags"] = kFlags;
   json["libraries"] = Versions();
+  json["plugins"] = Json::array();
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    Json names = Json::array();
+    for (const PluginName& name : plugin.names) names.push_back(name.kind + " " + name.name);
+    const std::string file = std::filesystem::path(plugin.path).filename().string();
+    json["plugins"].push_back({{"file", file}, {"sha256", plugin.sha256}, {"names", names}});
+  }
   json["sessions"] = std::move(sessions);
   return WriteFileAtomically(path, DumpJson(json, 1) + "\n", error);
 }

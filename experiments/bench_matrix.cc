@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "experiments/content_hash.h"
+#include "solvers/plugin_loader.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -125,6 +126,7 @@ const std::string& FileDigits(const std::string& path) {
 std::string Hashed(const BenchProblem& problem, const std::string& text) {
   ContentHash hash;
   hash.AddProgram();
+  for (const LoadedPlugin& plugin : LoadedPlugins()) hash.Add(plugin.sha256);
   hash.Add(FileDigits(problem.entry.data_path));
   hash.Add(text);
   return hash.Digits();

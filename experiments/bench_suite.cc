@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +11,7 @@
 #include "experiments/bench_matrix.h"
 #include "experiments/bench_problem.h"
 #include "problems/strict_json.h"
+#include "solvers/plugin_loader.h"
 
 namespace batten {
 namespace {
@@ -18,6 +20,18 @@ constexpr auto kRequired = StrictObject::Presence::kRequired;
 constexpr auto kOptional = StrictObject::Presence::kOptional;
 constexpr double kLongest = 1e9;  // seconds
 constexpr int kLargest = std::numeric_limits<int>::max();
+
+/// First of all: problems, terms and solvers may come from them. Paths begin at the suite's folder.
+bool ReadPlugins(const StrictObject& file, const std::string& suite_path) {
+  std::vector<std::string> paths;
+  if (!file.Texts("plugins", kOptional, &paths)) return false;
+  const std::filesystem::path folder = std::filesystem::path(suite_path).parent_path();
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::string why = LoadPlugins({(folder / paths[i]).string()}, &LoadedPlugins());
+    if (!why.empty()) return file.Complain("plugins/" + std::to_string(i), why);
+  }
+  return true;
+}
 
 bool ReadProblems(const StrictObject& file, BenchSuite* suite, std::string* error) {
   std::vector<StrictObject> entries;
@@ -195,15 +209,17 @@ bool ReadBenchSuite(const std::string& path, BenchSuite* suite, std::string* err
   BenchSuite read;
   read.path = path;
   std::string format;
-  if (!file.HasOnly({"format", "name", "summary", "problems", "terms", "solvers", "exclude",
-                     "targets", "budgets", "rule", "seeds", "repetitions", "warm_up", "order"}) ||
+  if (!file.HasOnly({"format", "name", "summary", "plugins", "problems", "terms", "solvers",
+                     "exclude", "targets", "budgets", "rule", "seeds", "repetitions", "warm_up",
+                     "order"}) ||
       !file.Word("format", kRequired, {"batten.suite/1"}, &format) ||
       !file.Text("name", kRequired, &read.name) ||
-      !file.Text("summary", kOptional, &read.summary) || !ReadProblems(file, &read, error) ||
-      !ReadTerms(file, &read) || !ReadBenchSolvers(file, &read.solvers) ||
-      !ReadExclusions(file, &read) || !ReadTargets(file, &read) || !ReadBudgets(file, &read) ||
-      !ReadRule(file, &read) || !ReadSeeds(file, &read) || !ReadOrder(file, &read) ||
-      !TryProblems(file, read) || !CheckExclusions(file, read)) {
+      !file.Text("summary", kOptional, &read.summary) || !ReadPlugins(file, path) ||
+      !ReadProblems(file, &read, error) || !ReadTerms(file, &read) ||
+      !ReadBenchSolvers(file, &read.solvers) || !ReadExclusions(file, &read) ||
+      !ReadTargets(file, &read) || !ReadBudgets(file, &read) || !ReadRule(file, &read) ||
+      !ReadSeeds(file, &read) || !ReadOrder(file, &read) || !TryProblems(file, read) ||
+      !CheckExclusions(file, read)) {
     return false;
   }
   *suite = std::move(read);

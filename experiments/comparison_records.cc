@@ -6,6 +6,7 @@
 #include "experiments/build_info.h"
 #include "experiments/comparison_tables.h"
 #include "problems/fit_problem.h"
+#include "solvers/plugin_loader.h"
 
 namespace batten {
 namespace {
@@ -98,6 +99,9 @@ void AddConditions(const RunSpec& spec, Json* json) {
 void AddBuild(Json* json) {
   (*json)["version"] = kVersion;
   (*json)["commit"] = kGitCommit;
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    (*json)["plugins"][plugin.path] = plugin.sha256;
+  }
   (*json)["compiler"] = kCompiler;
   (*json)["flags"] = kFlags;
 }

@@ -7,6 +7,7 @@
 #include "experiments/build_info.h"
 #include "experiments/fit_report.h"
 #include "problems/curve_constraints.h"
+#include "solvers/plugin_loader.h"
 
 namespace batten {
 namespace {
@@ -144,6 +145,9 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
   }
   json["version"] = kVersion;
   json["commit"] = kGitCommit;
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    json["plugins"][plugin.path] = plugin.sha256;
+  }
   return json;
 }
 

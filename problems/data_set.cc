@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cost_functions/options.h"
+#include "problems/data_reader.h"
 #include "problems/input_file.h"
 
 namespace batten {
@@ -197,6 +198,19 @@ class DataSetReader {
   DataSet data_;
 };
 
+std::optional<DataSet> ReadBy(const DataReader& reader, const std::string& path,
+                              std::string* error) {
+  std::optional<DataSet> data = reader.read(path, error);
+  if (!data.has_value()) return std::nullopt;
+  std::string why;
+  if (!CheckDataSet(*data, &why)) {
+    *error = path + ": data reader " + reader.name + ": " + why;
+    return std::nullopt;
+  }
+  if (data->name.empty()) data->name = std::filesystem::path(path).stem().string();
+  return data;
+}
+
 }  // namespace
 
 std::optional<DataSet> ReadDataSet(std::istream& stream, const std::string& label,
@@ -206,6 +220,8 @@ std::optional<DataSet> ReadDataSet(std::istream& stream, const std::string& labe
 
 std::optional<DataSet> ReadDataSet(const std::string& path, std::string* error) {
   if (path == "-") return ReadDataSet(std::cin, path, error);
+  const DataReader* const reader = DataReaderRegistry::Global().ForFile(path);
+  if (reader != nullptr) return ReadBy(*reader, path, error);
   std::ifstream file;
   if (!OpenInput(path, &file, error)) return std::nullopt;
   return ReadDataSet(file, path, error);

@@ -23,7 +23,7 @@ struct DataSet {
 /// LF and a byte-order mark are accepted. Nothing, with `FILE:LINE:COLUMN: what was found; what is
 /// allowed` in `error` (column: 1-based field), for a missing or unknown column, text in a number,
 /// NaN, infinity, a number beyond +-1e150 (its square would overflow), rows of different length, or
-/// no point at all.
+/// no point at all. A file whose name ends as a registered DataReader says is read by that.
 std::optional<DataSet> ReadDataSet(const std::string& path, std::string* error);  // "-": std::cin
 std::optional<DataSet> ReadDataSet(std::istream& stream, const std::string& label,
                                    std::string* error);

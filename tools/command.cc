@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cost_functions/options.h"
+#include "tools/plugin_flags.h"
 
 namespace batten {
 namespace {
@@ -20,10 +21,16 @@ bool IsAny(const std::string& text, const std::vector<std::string>& words) {
 }  // namespace
 
 const std::vector<Command>& Commands() {
-  static const auto& commands = *new std::vector<Command>{
-      FitCommand(),    CompareCommand(),   BenchCommand(),     MergeCommand(), RegressCommand(),
-      ReportCommand(), ReproduceCommand(), SubdivideCommand(), ListCommand(),  HelpCommand(),
-  };
+  static const auto& commands = *[] {
+    auto* made = new std::vector<Command>{
+        FitCommand(),     CompareCommand(), BenchCommand(),     MergeCommand(),
+        RegressCommand(), ReportCommand(),  ReproduceCommand(), SubdivideCommand(),
+        ListCommand(),    CheckCommand(),   NewCommand(),
+    };
+    for (Command& command : *made) command.flags.push_back(PluginsFlag());
+    made->push_back(HelpCommand());
+    return made;
+  }();
   return commands;
 }
 
@@ -62,6 +69,10 @@ int RunCommandLine(const std::vector<std::string>& arguments, CommandOutput* out
     output->results = parsed.help ? CommandHelp(*command) : VersionText();
     return kDone;
   }
+  const bool knows_plugins =
+      std::any_of(command->flags.begin(), command->flags.end(),
+                  [](const FlagInfo& flag) { return flag.name == "plugins"; });
+  if (knows_plugins && !LoadPluginsFromFlags(&output->error)) return kBadInput;
   return command->run(parsed.positional, output);
 }
 

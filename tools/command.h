@@ -48,6 +48,8 @@ Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
 Command ReportCommand();     // report_command.cc
 Command ListCommand();       // list_command.cc
+Command CheckCommand();      // check_command.cc
+Command NewCommand();        // new_command.cc
 Command HelpCommand();       // help_command.cc
 
 std::string GeneralHelp();

@@ -9,6 +9,7 @@
 #include "experiments/comparison_tables.h"
 #include "experiments/content_hash.h"
 #include "problems/input_file.h"
+#include "solvers/plugin_loader.h"
 #include "tools/cell_reader.h"
 
 namespace batten {
@@ -41,6 +42,8 @@ std::string CellKey(const CatalogueEntry& entry, const NameSpec& solver,
        << NumberText(run.max_seconds) << ' ' << NumberText(run.native_step) << ' '
        << NumberText(run.native_gradient) << ' ' << run.seed << ' ' << run.threads << ' '
        << run.compile << ' ' << spec.repetitions;
+  // Any of them may be what the problem, its terms or the solver come from.
+  for (const LoadedPlugin& plugin : LoadedPlugins()) text << ' ' << plugin.sha256;
   hash.Add(text.str());
   return hash.Digits();
 }

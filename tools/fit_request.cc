@@ -2,7 +2,6 @@
 
 #include <gflags/gflags.h>
 
-#include "problems/catalogue.h"
 #include "problems/curve_constraints.h"
 #include "problems/fit_guard.h"
 #include "tools/fairing_flags.h"
@@ -186,10 +185,11 @@ bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
     return false;
   }
   if (!has_problem) {
-    request->data_path = positional.front();
-    request->label = request->data_path == "-" ? "stdin" : request->data_path;
+    const std::string& path = positional.front();
+    request->entry.data_path = path;
+    request->label = path == "-" ? "stdin" : path;
     request->source = request->label;
-    request->input_files = {request->data_path};
+    request->input_files = {path};
     return true;
   }
   CatalogueEntry entry;
@@ -197,7 +197,7 @@ bool FindInput(const std::vector<std::string>& positional, FitRequest* request,
     *error = "--problem: " + *error;
     return false;
   }
-  *request = {entry.spec, entry.data_path, entry.name, entry.path, {entry.data_path, entry.path}};
+  *request = {entry.spec, entry, entry.name, entry.path, {entry.data_path, entry.path}};
   return true;
 }
 
@@ -262,7 +262,7 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
 
 std::unique_ptr<Problem> LoadFit(const FitRequest& request, FairingChoice* choice,
                                  std::string* error) {
-  std::optional<DataSet> data = ReadDataSet(request.data_path, error);
+  std::optional<DataSet> data = LoadData(request.entry, error);
   if (!data.has_value()) return nullptr;
   FitSpec spec = request.spec;
   if (!ApplyFairingFlags(*data, &spec, choice, error)) return nullptr;

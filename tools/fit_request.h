@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/fairing_choice.h"
+#include "problems/catalogue.h"
 #include "problems/fit_problem.h"
 #include "tools/flags.h"
 
@@ -14,7 +15,7 @@ namespace batten {
 /// What `fit` is asked to fit, as far as it is known before the data are read.
 struct FitRequest {
   FitSpec spec;
-  std::string data_path;                 // "-": standard input
+  CatalogueEntry entry;                  // its data_path "-": standard input
   std::string label;                     // what the summary calls it
   std::string source;                    // the file of data or of the problem, for messages
   std::vector<std::string> input_files;  // all that are read: none of them may be an output

@@ -7,6 +7,7 @@
 #include "cost_functions/term.h"
 #include "problems/catalogue.h"
 #include "solvers/cut_rule_registry.h"
+#include "solvers/plugin_loader.h"
 #include "solvers/solver_registry.h"
 #include "tools/command.h"
 
@@ -115,6 +116,23 @@ Json ProblemsJson(const std::vector<CatalogueEntry>& entries) {
   return list;
 }
 
+Json PluginsJson() {
+  Json list = Json::array();
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    Json names = Json::array();
+    for (const PluginName& name : plugin.names) {
+      names.push_back({{"kind", name.kind}, {"name", name.name}});
+    }
+    Json card = Json::object();
+    for (const auto& [field, value] : plugin.card) card[field] = value;
+    list.push_back({{"path", plugin.path},
+                    {"sha256", plugin.sha256},
+                    {"card", std::move(card)},
+                    {"names", std::move(names)}});
+  }
+  return list;
+}
+
 constexpr size_t kIndent = 21;
 
 std::string Entry(const std::string& name, const std::string& text, size_t indent = kIndent) {
@@ -210,6 +228,7 @@ int RunList(const std::vector<std::string>& positional, CommandOutput* output) {
     if (shown("terms")) json["terms"] = TermsJson();
     if (shown("rules")) json["rules"] = RulesJson();
     if (shown("problems")) json["problems"] = ProblemsJson(entries);
+    if (!LoadedPlugins().empty()) json["plugins"] = PluginsJson();
     output->results = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     return kDone;
   }

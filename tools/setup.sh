@@ -9,8 +9,8 @@ fail() {
 }
 
 run=(cmake g++ gnuplot-nox libceres-dev libeigen3-dev libgflags-dev libgoogle-glog-dev
-     libmd4c-dev libmd4c-html0-dev libpugixml-dev ninja-build nlohmann-json3-dev)
-test=("${run[@]}" libgmock-dev libgtest-dev)
+     libmd-dev libmd4c-dev libmd4c-html0-dev libpugixml-dev ninja-build nlohmann-json3-dev)
+test=("${run[@]}" libgmock-dev libgtest-dev liblbfgs-dev libnlopt-dev)
 ci=("${test[@]}" clang-format clang-tidy git)
 page=("${run[@]}" chromium fonts-dejavu-core python3)
 bench=("${run[@]}" libbenchmark-dev liblbfgs-dev python3-scipy)

@@ -1,14 +1,17 @@
 // Fits a closed cubic to points on an ellipse with two solvers and compares their ends: what a
-// program outside Batten's tree needs, from the installed package alone.
+// program outside Batten's tree needs, from the installed package alone. Plugins may follow on its
+// name; their solvers come behind ours.
 
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "experiments/run.h"
 #include "problems/fit_problem.h"
+#include "solvers/plugin_loader.h"
 
-int main() {
+int main(int argc, char** argv) {
   constexpr int kNumPoints = 60;
   batten::DataSet data;
   data.name = "ellipse";
@@ -27,20 +30,32 @@ int main() {
     std::fprintf(stderr, "%s\n", error.c_str());
     return 2;
   }
-  double energies[2] = {0.0, 0.0};
-  const char* const solvers[2] = {"banded_qr", "lbfgs"};
-  for (int s = 0; s < 2; ++s) {
+  std::vector<batten::LoadedPlugin> plugins;
+  error = batten::LoadPlugins(std::vector<std::string>(argv + 1, argv + argc), &plugins);
+  if (!error.empty()) {
+    std::fprintf(stderr, "%s\n", error.c_str());
+    return 2;
+  }
+  std::vector<std::string> solvers = {"banded_qr", "lbfgs"};
+  for (const batten::LoadedPlugin& plugin : plugins) {
+    for (const batten::PluginName& name : plugin.names) {
+      if (name.kind == "solver") solvers.push_back(name.name);
+    }
+  }
+  double minimum = 0.0;
+  for (const std::string& solver : solvers) {
     batten::NameSpec name;
     batten::RunResult result;
-    if (!batten::ParseNameSpec(solvers[s], &name, &error) ||
+    if (!batten::ParseNameSpec(solver, &name, &error) ||
         !batten::Run(*problem, name, batten::RunSpec(), &result, &error)) {
       std::fprintf(stderr, "%s\n", error.c_str());
       return 2;
     }
-    energies[s] = result.energy;
-    std::printf("%-10s %3d iterations  E = %.12g  %s\n", solvers[s], result.iterations,
+    std::printf("%-16s %3d iterations  E = %.12g  %s\n", solver.c_str(), result.iterations,
                 result.energy, batten::ToString(result.outcome.reason));
+    if (solver == solvers.front()) minimum = result.energy;
+    // All end at the one minimum: E is flat there, so that E agrees to rounding of its own size.
+    if (!(std::abs(result.energy - minimum) <= 1e-12 * minimum)) return 1;
   }
-  // Both end at the one minimum: E is flat there, so that E agrees to rounding of its own size.
-  return std::abs(energies[0] - energies[1]) <= 1e-12 * energies[0] ? 0 : 1;
+  return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "solvers/stopping_context.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
@@ -9,49 +10,7 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// Says stop at an iterate or at an evaluation, and notes what is asked of it after that.
-class StoppingContext final : public RunContext, public EvaluationMonitor {
- public:
-  StoppingContext(int last_iterate, int max_evaluations)
-      : last_iterate_(last_iterate), max_evaluations_(max_evaluations) {}
-
-  bool Allow(Evaluation, const Eigen::VectorXd*) override {
-    if (stopped_) ++asked_after_stop_;
-    if (num_evaluations_ >= max_evaluations_) stopped_ = true;
-    if (!stopped_) ++num_evaluations_;
-    return !stopped_;
-  }
-  Status Iterate(const Eigen::VectorXd& x) override {
-    if (stopped_) ++booked_after_stop_;
-    iterates_.push_back(x);
-    if (static_cast<int>(iterates_.size()) > last_iterate_) stopped_ = true;
-    return stopped_ ? Status::kStop : Status::kOk;
-  }
-  StopReason stop_reason() const override {
-    return stopped_ ? StopReason::kInterrupted : StopReason::kNotRun;
-  }
-  void Note(const std::string&, const std::string&) override {}
-  void OffTheClock(const std::function<void()>& work) override { work(); }
-  std::uint64_t seed() const override { return 1; }
-  int threads() const override { return 1; }
-
-  bool stopped() const { return stopped_; }
-  int asked_after_stop() const { return asked_after_stop_; }
-  int booked_after_stop() const { return booked_after_stop_; }
-  int num_evaluations() const { return num_evaluations_; }
-  const std::vector<Eigen::VectorXd>& iterates() const { return iterates_; }
-
- private:
-  int last_iterate_;
-  int max_evaluations_;
-  bool stopped_ = false;
-  int num_evaluations_ = 0;
-  int asked_after_stop_ = 0;
-  int booked_after_stop_ = 0;
-  std::vector<Eigen::VectorXd> iterates_;
-};
-
-constexpr int kNever = std::numeric_limits<int>::max();
+constexpr int kNever = StoppingContext::kNever;
 
 /// Of the free variables.
 Eigen::VectorXd Start(const Problem& problem) { return Objective(&problem, nullptr).start(); }

@@ -1,0 +1,3 @@
+#include "solvers/plugin.h"
+
+BATTEN_PLUGIN(/*registry*/) {}

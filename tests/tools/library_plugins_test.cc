@@ -1,0 +1,71 @@
+// libLBFGS and NLopt as plugins: the algorithm that ran, by what the library says and by what it
+// does.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "tests/tools/plugin_files.h"
+#include "tests/tools/program.h"
+
+namespace batten {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// fit.json of a run, empty where it did not end well.
+nlohmann::json FitBy(const std::string& plugin, const std::string& solver) {
+  const TemporaryFolder folder;
+  const Ended ended =
+      RunBatten({"fit", "--problem=rhino", "--solver=" + solver, "--quiet", "--max_iterations=60",
+                 "--max_seconds=2", "--out=" + (folder / "fit.json"), PluginFlag(plugin)});
+  EXPECT_LE(ended.status, 1) << ended.err;
+  return nlohmann::json::parse(ReadFile(folder / "fit.json"), nullptr, false);
+}
+
+std::string NoteOf(const nlohmann::json& fit) {
+  for (const auto& note : fit["notes"]) {
+    if (note["name"] == "algorithm that ran") return note["value"];
+  }
+  return "";
+}
+
+TEST(LibraryPlugins, NloptRunsTheAlgorithmThatIsNamed) {
+  if (!std::filesystem::exists(Plugin("nlopt"))) GTEST_SKIP() << "NLopt is not there";
+  // The names are NLopt's own (its reference manual, "NLopt Algorithms").
+  const std::map<std::string, std::string> names = {
+      {"lbfgs", "L-BFGS"}, {"var1", "rank 1"},
+      {"var2", "rank 2"},  {"tnewton_precond_restart", "Newton"},
+      {"mma", "MMA"},      {"ccsaq", "CCSA"},
+      {"slsqp", "(SQP)"},  {"sbplx", "Sbplx"}};
+  std::set<double> energies;
+  for (const auto& [word, name] : names) {
+    SCOPED_TRACE(word);
+    const auto fit = FitBy("nlopt", "nlopt/algorithm=" + word);
+    EXPECT_THAT(NoteOf(fit), HasSubstr(name));
+    EXPECT_LT(fit["energy"].get<double>(), fit["start"]["energy"].get<double>());
+    // Derivative-free ones ask for no gradient.
+    EXPECT_EQ(fit["counts"]["gradient_calls"].get<int>() == 0, word == "sbplx");
+    energies.insert(fit["energy"].get<double>());
+  }
+  // Different algorithms are at different places after 60 iterations.
+  EXPECT_EQ(energies.size(), names.size());
+}
+
+TEST(LibraryPlugins, LibLbfgsHeedsItsOptions) {
+  if (!std::filesystem::exists(Plugin("liblbfgs"))) GTEST_SKIP() << "libLBFGS is not there";
+  std::set<double> energies;
+  const std::vector<std::string> options = {"/memory=1", "/memory=20", "/line_search=armijo"};
+  for (const std::string& option : options) {
+    SCOPED_TRACE(option);
+    const auto fit = FitBy("liblbfgs", "liblbfgs" + option);
+    EXPECT_THAT(NoteOf(fit), HasSubstr("libLBFGS L-BFGS m="));
+    EXPECT_GT(fit["counts"]["gradient_calls"].get<int>(), 0);
+    energies.insert(fit["energy"].get<double>());
+  }
+  EXPECT_EQ(energies.size(), options.size());
+}
+
+}  // namespace
+}  // namespace batten
