@@ -30,7 +30,7 @@ GuardedVector::GuardedVector(const Eigen::VectorXd& values) {
   mallopt(M_MMAP_THRESHOLD, 1);  // every block gets pages of its own
   // New pages lie below the ones mapped last, unless there is a gap that they fit in: which is
   // filled in the end.
-  constexpr int kMostAttempts = 200;
+  constexpr int kMostAttempts = 10000;
   std::vector<Eigen::VectorXd> misses;
   std::vector<void*> unused;
   for (int attempt = 0; attempt < kMostAttempts && guard_ == nullptr; ++attempt) {

@@ -147,8 +147,12 @@ bool ReadSetting(const std::string& path, OrderedJson* setting, std::string* err
 /// Data points are drawn as dots: no more than fill a panel.
 void ThinPoints(OrderedJson* setting) {
   constexpr std::size_t kMostPoints = 500;
+  // A new key moves all values of an ordered object: no reference is taken before it.
+  if (!setting->contains("num_points")) {
+    const std::size_t num_points = (*setting)["points"].size();
+    (*setting)["num_points"] = num_points;
+  }
   OrderedJson& points = (*setting)["points"];
-  if (!setting->contains("num_points")) (*setting)["num_points"] = points.size();
   if (points.size() <= kMostPoints) return;
   OrderedJson kept = OrderedJson::array();
   const std::size_t step = (points.size() + kMostPoints - 1) / kMostPoints;
