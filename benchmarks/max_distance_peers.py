@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 """Control points that `batten fit --max_distance` needs beside FITPACK and SISL, and the time.
 
-    python3 benchmarks/max_distance_peers.py [--batten=build/batten] [--sisl=.../max_distance_sisl]
-        [--files=a.csv,b.csv] [--bounds=1e-2,1e-3,1e-4]
+    python3 benchmarks/max_distance_peers.py [--batten=build/batten] [--sisl=PROGRAM]
+        [--files=a.csv,b.csv] [--bounds=1e-2,1e-3,1e-4] [--degree=3]
+
+Wants Debian's python3-scipy and, for SISL, libsisl-dev; PROGRAM is max_distance_sisl of the build
+with benchmarks. Without it SISL is left out, and said so.
 
 A bound is a share of the longest side of the data's box. Each peer's own tolerance (s of splprep;
-eeps of s1961) is bisected, in its logarithm, to the curve of the fewest control points whose
-largest foot-point distance is within the bound. Distances of all curves are measured here, by one
-plain route: dense samples, then Newton's steps from the nearest ones. Shown are control points
-(free ones: a closed curve's are counted once) and processor seconds of the last call alone, with
-the seconds of the whole bisection beside them.
+eeps of s1961, its best of three ways to share it) is bisected, in its logarithm, to the curve of
+the fewest control points whose largest foot-point distance is within the bound. Distances of all
+curves are measured here, by one plain route that knows nothing of Batten: dense samples, then
+golden sections around the three nearest. Control points are the free ones: those that repeat on a
+closed curve count once. Times are processor seconds, of the peer's one call that made its curve and
+of its whole bisection, and of our search, all in this run.
 """
 import argparse
 import csv
@@ -41,33 +45,54 @@ def read_points(path):
     return points[keep]
 
 
-def largest_distance(knots, coefficients, degree, begin, end, points):
-    """At the feet that dense samples and Newton's steps find; never too small but for a foot that
-    the samples miss."""
+def refine(curve, points, low, high):
+    """Distances at the minima that golden sections find in [low, high], one of each point."""
+    ratio = (5.0**0.5 - 1.0) / 2.0
+
+    def squared(t):
+        return ((curve(t) - points) ** 2).sum(1)
+
+    a, b = high - ratio * (high - low), low + ratio * (high - low)
+    fa, fb = squared(a), squared(b)
+    for _ in range(45):
+        left = fa < fb
+        low, high = numpy.where(left, low, a), numpy.where(left, b, high)
+        new = numpy.where(left, high - ratio * (high - low), low + ratio * (high - low))
+        value = squared(new)
+        a, b, fa, fb = (numpy.where(left, new, b), numpy.where(left, a, new),
+                        numpy.where(left, value, fb), numpy.where(left, fa, value))
+    return numpy.sqrt(numpy.minimum(fa, fb))
+
+
+def largest_distance(knots, coefficients, degree, points):
+    """At the feet that dense samples and golden sections between them find: never below the true
+    one. Points whose nearest sample is nearer than the largest distance so far are left alone."""
     curve = BSpline(knots, coefficients, degree)
+    begin, end = knots[degree], knots[-degree - 1]
     breaks = numpy.unique(numpy.clip(knots, begin, end))
-    inner = numpy.linspace(0.0, 1.0, 65)[:-1]
+    inner = numpy.linspace(0.0, 1.0, 257)[:-1]
     samples = (breaks[:-1, None] + numpy.diff(breaks)[:, None] * inner).ravel()
     samples = numpy.append(samples, end)
-    tree = cKDTree(curve(samples))
-    best = numpy.full(len(points), numpy.inf)
-    _, nearest = tree.query(points, k=3)
-    for choice in nearest.T:
-        low, high = samples[numpy.maximum(choice - 1, 0)], samples[numpy.minimum(choice + 1, len(samples) - 1)]
-        t = samples[choice]
-        for _ in range(12):
-            r, d1, d2 = curve(t) - points, curve(t, nu=1), curve(t, nu=2)
-            best = numpy.minimum(best, numpy.linalg.norm(r, axis=1))
-            g, h = (r * d1).sum(1), (d1 * d1).sum(1) + (r * d2).sum(1)
-            h = numpy.where(h > 0.0, h, (d1 * d1).sum(1))
-            t = numpy.clip(t - g / numpy.where(h > 0.0, h, 1.0), low, high)
-        best = numpy.minimum(best, numpy.linalg.norm(curve(t) - points, axis=1))
-    return best.max()
+    sampled, nearest = cKDTree(curve(samples)).query(points, k=3)
+    order = numpy.argsort(-sampled[:, 0])
+    largest = 0.0
+    for first in range(0, len(points), 100):
+        chosen = order[first : first + 100]
+        if sampled[chosen[0], 0] <= largest:
+            break
+        best = sampled[chosen, 0]
+        for choice in nearest[chosen].T:
+            low = samples[numpy.maximum(choice - 1, 0)]
+            high = samples[numpy.minimum(choice + 1, len(samples) - 1)]
+            best = numpy.minimum(best, refine(curve, points[chosen], low, high))
+        largest = max(largest, best.max())
+    return largest
 
 
 def bisect(try_tolerance, bound, low, high):
-    """The fewest control points of all tries within the bound, the tolerance of the largest
-    distance within it being sought; seconds of that try and of all."""
+    """The fewest control points of all tries within the bound; seconds of that try and of all. The
+    largest tolerance that keeps the bound is sought; a distance that is not monotone in it may hide
+    fewer, so every try counts."""
     best, total = None, 0.0
     for _ in range(STEPS):
         middle = (low * high) ** 0.5
@@ -85,7 +110,6 @@ def bisect(try_tolerance, bound, low, high):
 
 
 def fitpack(points, closed, degree, bound):
-    size = numpy.ptp(points, axis=0).max()
     if closed:
         points = numpy.vstack([points, points[:1]])
 
@@ -99,11 +123,11 @@ def fitpack(points, closed, degree, bound):
                 return None
             seconds = time.process_time() - begin
         n = len(knots) - degree - 1 - (degree if closed else 0)
-        distance = largest_distance(knots, numpy.array(coefficients).T, degree, knots[degree],
-                                    knots[-degree - 1], points)
+        distance = largest_distance(knots, numpy.array(coefficients).T, degree, points)
         return n, distance, seconds
 
-    return bisect(attempt, bound, len(points) * (1e-4 * bound) ** 2, len(points) * (10.0 * bound) ** 2 + 1e-300 * size)
+    m = len(points)
+    return bisect(attempt, bound, m * (1e-4 * bound) ** 2, m * (10.0 * bound) ** 2)
 
 
 def sisl(program, points, closed, degree, bound):
@@ -120,7 +144,7 @@ def sisl(program, points, closed, degree, bound):
         knots = numpy.array([float(x) for x in process.stdout.readline().split()])
         rows = numpy.array([float(x) for x in process.stdout.readline().split()])
         coefficients = rows.reshape(-1, points.shape[1])
-        distance = largest_distance(knots, coefficients, degree, knots[degree], knots[-degree - 1], points)
+        distance = largest_distance(knots, coefficients, degree, points)
         return int(words[0]), distance, float(words[1])
 
     result = bisect(attempt, bound, 0.01 * bound, 30.0 * bound)
@@ -142,10 +166,25 @@ def ours(batten, path, points, closed, degree, bound, folder):
     n = len(control_points)
     if closed:
         control_points = control_points[numpy.arange(n + degree) % n]
-    distance = largest_distance(knots, control_points, degree, knots[degree], knots[-degree - 1], points)
+    distance = largest_distance(knots, control_points, degree, points)
     if not distance <= bound * (1.0 + 1e-9):
         raise SystemExit(f"{path}: {distance} is above the bound {bound}")
     return n, result["cpu_seconds"]
+
+
+def shown(result):
+    return "none" if result is None else f"{result[0]} ({result[1]:.3f} / {result[2]:.2f} s)"
+
+
+def summarise(peer, rows, wanted):
+    counts = [mine[0] / theirs[0] for mine, theirs in rows]
+    calls = [mine[1] / theirs[1] for mine, theirs in rows]
+    bisections = [mine[1] / theirs[2] for mine, theirs in rows]
+    print(f"control points beside {peer}: {statistics.median(counts):.2f} times "
+          f"({min(counts):.2f} to {max(counts):.2f}), wanted at most {wanted}")
+    print(f"time beside one call of {peer}: {statistics.median(calls):.1f} times; "
+          f"beside its bisection: {statistics.median(bisections):.2f} times "
+          f"({min(bisections):.2f} to {max(bisections):.2f})")
 
 
 def main():
@@ -155,19 +194,32 @@ def main():
     parser.add_argument("--files", default=",".join(FILES))
     parser.add_argument("--bounds", default="1e-2,1e-3,1e-4")
     parser.add_argument("--degree", type=int, default=3)
-    parser.add_argument("--peers_only", action="store_true")
     arguments = parser.parse_args()
-    ratios = {"FITPACK": [], "SISL": []}
-    for name in arguments.files.split(","):
-        path = name if os.path.exists(name) else os.path.join(DATA, name)
-        points = read_points(path)
-        closed = not os.path.splitext(path)[0].endswith("_open")
-        size = numpy.ptp(points, axis=0).max()
-        for share in map(float, arguments.bounds.split(",")):
-            bound = share * size
-            f = fitpack(points, closed, arguments.degree, bound)
-            s = sisl(arguments.sisl, points, closed, arguments.degree, bound) if arguments.sisl else None
-            print(name, share, "FITPACK", f, "SISL", s, flush=True)
+    load = os.getloadavg()[0]
+    print(f"load average {load:.1f}" + (": **busy**" if load > 0.5 else ""))
+    if not arguments.sisl:
+        print("SISL is left out: --sisl names no program")
+    rows = {"FITPACK": [], "SISL": []}
+    print("file, bound: ours (s); FITPACK, SISL (s of one call / of the bisection)")
+    with tempfile.TemporaryDirectory() as folder:
+        for name in arguments.files.split(","):
+            path = name if os.path.exists(name) else os.path.join(DATA, name)
+            points = read_points(path)
+            closed = not os.path.splitext(path)[0].endswith("_open")
+            for share in map(float, arguments.bounds.split(",")):
+                bound = share * float(numpy.ptp(points, axis=0).max())
+                mine = ours(arguments.batten, path, points, closed, arguments.degree, bound, folder)
+                theirs = {"FITPACK": fitpack(points, closed, arguments.degree, bound)}
+                if arguments.sisl:
+                    theirs["SISL"] = sisl(arguments.sisl, points, closed, arguments.degree, bound)
+                peers = ", ".join(f"{peer} {shown(result)}" for peer, result in theirs.items())
+                print(f"{name}, {share:g}: {mine[0]} ({mine[1]:.2f} s); {peers}", flush=True)
+                for peer, result in theirs.items():
+                    if result is not None:
+                        rows[peer].append((mine, result))
+    for peer, compared in rows.items():
+        if compared:
+            summarise(peer, compared, 1)
 
 
 main()

@@ -1,7 +1,8 @@
 // Data reduction by SISL (s1961: knot removal of Lyche and Morken) as a filter for
-// max_distance_peers.py: it reads "dimension closed degree m" and m points, then tolerances; to each it
-// answers "dof seconds number_of_knots number_of_coefficients", the knots and the coefficients of
-// its curve with the fewest control points over three ways to share the tolerance, or "none".
+// max_distance_peers.py: it reads "dimension closed degree m" and m points, then tolerances; to
+// each it answers "dof seconds number_of_knots number_of_coefficients", the knots and the
+// coefficients of its curve with the fewest control points over three ways to share the tolerance,
+// or "none".
 
 #include <sisl.h>
 #include <time.h>
@@ -40,7 +41,8 @@ int main() {
   if (closed != 0) points.insert(points.end(), points.begin(), points.begin() + dimension);
   std::cout << std::setprecision(17);
   for (double tolerance = 0.0; std::cin >> tolerance;) {
-    std::vector<double> tolerances(static_cast<std::size_t>(dimension), tolerance), error = tolerances;
+    std::vector<double> tolerances(static_cast<std::size_t>(dimension), tolerance),
+        error = tolerances;
     SISLCurve* best = nullptr;
     int fewest = 0;
     const double begin = ProcessorSeconds();
@@ -64,8 +66,8 @@ int main() {
       std::cout << "none" << std::endl;
       continue;
     }
-    std::cout << fewest << ' ' << ProcessorSeconds() - begin << ' ' << best->in + best->ik << ' ' << best->in
-              << '\n';
+    std::cout << fewest << ' ' << ProcessorSeconds() - begin << ' ' << best->in + best->ik << ' '
+              << best->in << '\n';
     for (int i = 0; i < best->in + best->ik; ++i) std::cout << best->et[i] << ' ';
     std::cout << '\n';
     for (int i = 0; i < best->in * dimension; ++i) std::cout << best->ecoef[i] << ' ';

@@ -78,7 +78,7 @@ void CurveWindow::CollectPoints() {
 
 void CurveWindow::CollectGaps() {
   const int m = curve_->num_points();
-  int last = -1;
+  int last = -2;  // -1 is the gap before an open curve's first point
   for (const int i : points_) {
     for (const int gap : {i - 1, i}) {
       if (gap <= last || (!curve_->closed() && gap > m - 1)) continue;
@@ -100,11 +100,12 @@ void CurveWindow::AddSamples(int gap, std::vector<Sample>* samples) const {
   double begin = gap < 0 ? curve_->domain_begin() : curve_->parameter(left);
   double step = (gap + 1 >= m && !closed ? curve_->domain_end() : curve_->parameter(right)) - begin;
   if (closed) step -= curve_->period() * std::round(step / curve_->period());
-  if (std::abs(step) < 0.02 * mean_span_) return;
+  const bool is_end = !closed && (gap < 0 || gap + 1 >= m);
+  if (std::abs(step) < (is_end ? 1e-6 : 0.02) * mean_span_) return;
   const int span = curve_->SpanOf(begin + 0.5 * step);
   const double share = std::abs(step) / (curve_->Knot(span + 1) - curve_->Knot(span));
   constexpr double kSmallShare = 0.1;
-  if (share < kSmallShare) return;
+  if (share < kSmallShare && !is_end) return;
   const int count = std::clamp(static_cast<int>(std::ceil(6.0 * share)), 1, kMostSamples);
   const int d = curve_->dimension();
   const double* const a = curve_->point(left);
@@ -125,7 +126,8 @@ void CurveWindow::AddSamples(int gap, std::vector<Sample>* samples) const {
     for (int c = 0; c < d; ++c) sample.target[c] = a[c] + place * (b[c] - a[c]);
     sample.squared_bound = allowed * allowed;
     double squared = 0.0;
-    for (int c = 0; c < d; ++c) squared += (value[c] - sample.target[c]) * (value[c] - sample.target[c]);
+    for (int c = 0; c < d; ++c)
+      squared += (value[c] - sample.target[c]) * (value[c] - sample.target[c]);
     sample.ratio = squared / sample.squared_bound;
     samples->push_back(sample);
   }
@@ -174,7 +176,8 @@ CurveWindow::State CurveWindow::Save() const {
     const double* const point = curve_->ControlPoint(first_ + j);
     state.control_points.insert(state.control_points.end(), point, point + d);
   }
-  for (int k = 0; k < num_knots_; ++k) state.knots.push_back(curve_->Knot(curve_->Index(first_knot_ + k)));
+  for (int k = 0; k < num_knots_; ++k)
+    state.knots.push_back(curve_->Knot(curve_->Index(first_knot_ + k)));
   for (const int i : points_) {
     state.parameters.push_back(curve_->parameter(i));
     state.squared_distances.push_back(curve_->squared_distance(i));
@@ -304,8 +307,7 @@ void CurveWindow::AddPoint(double t, const double* q, double squared_bound, int 
     squared += residual[c] * residual[c];
     squared_speed += tangent[c] * tangent[c];
   }
-  const double weight =
-      HalfPower(squared / squared_bound + kFloor, power - 2) / squared_bound;
+  const double weight = HalfPower(squared / squared_bound + kFloor, power - 2) / squared_bound;
   // A foot slides along the curve, but not past its end.
   const bool at_end =
       !curve_->closed() && (t <= curve_->domain_begin() || t >= curve_->domain_end());

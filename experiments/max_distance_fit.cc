@@ -101,8 +101,7 @@ bool MakeProblem(DataSet data, const FitSpec& asked, const TrackedCurve& found,
   }
   const Points control_points =
       (curve->control_points() / counted.scale).rowwise() + counted.center;
-  Eigen::VectorXd feet =
-      StartsOfFeet(found, curve->basis(), counted, data.points.rows());
+  Eigen::VectorXd feet = StartsOfFeet(found, curve->basis(), counted, data.points.rows());
   const BsplineCurve moved(curve->basis(), control_points);
   ClosestPoint(moved).FindAll(data.points, 1, &feet, nullptr);
 
@@ -164,14 +163,14 @@ bool FitWithinDistance(DataSet data, const FitSpec& spec, double bound, const Se
   const auto parameters = Parameterize(spec.parameters.value_or(Parameterization::kChordLength),
                                        spec.closed, counted.points, error);
   if (!parameters.has_value()) return false;
-  const double rounding = kRoundings * std::numeric_limits<double>::epsilon() *
-                          data.points.cwiseAbs().maxCoeff();
+  const double rounding =
+      kRoundings * std::numeric_limits<double>::epsilon() * data.points.cwiseAbs().maxCoeff();
   bool went_on = true;
-  const auto found = SearchFewControlPoints(
-      spec.degree, spec.closed, counted.points, *parameters, (bound - rounding) * counted.scale,
-      [&](int num_control_points, double fraction) {
-        return went_on = watch(num_control_points, fraction);
-      });
+  const auto found = SearchFewControlPoints(spec.degree, spec.closed, counted.points, *parameters,
+                                            (bound - rounding) * counted.scale,
+                                            [&](int num_control_points, double fraction) {
+                                              return went_on = watch(num_control_points, fraction);
+                                            });
   if (!found.has_value()) {
     *error = went_on ? "max_distance is " + NumberText(bound) +
                            ", which not even the spline through all points keeps; give a larger one"

@@ -16,7 +16,8 @@ namespace {
 /// Rows of the least-squares problem at sorted parameters in the domain, span by span.
 class CollocationRows {
  public:
-  CollocationRows(const BsplineBasis& basis, const Points& points, const Eigen::VectorXd& parameters)
+  CollocationRows(const BsplineBasis& basis, const Points& points,
+                  const Eigen::VectorXd& parameters)
       : basis_(basis), points_(points), parameters_(parameters) {}
 
   RowShape shape() const {
@@ -34,7 +35,8 @@ class CollocationRows {
     for (int begin = 0; begin < m;) {
       const int span = basis_.FindSpan(parameters_[begin]);
       int end = begin + 1;
-      while (end < m && end - begin < kMaxRowsPerBlock && basis_.FindSpan(parameters_[end]) == span) ++end;
+      while (end < m && end - begin < kMaxRowsPerBlock && basis_.FindSpan(parameters_[end]) == span)
+        ++end;
       Consume(span, begin, end, consumer);
       begin = end;
     }
@@ -72,7 +74,11 @@ class Grower {
  public:
   Grower(int degree, bool closed, const Points& points, const Eigen::VectorXd& parameters,
          double bound)
-      : degree_(degree), closed_(closed), points_(points), parameters_(parameters), squared_bound_(bound * bound) {}
+      : degree_(degree),
+        closed_(closed),
+        points_(points),
+        parameters_(parameters),
+        squared_bound_(bound * bound) {}
 
   std::optional<TrackedCurve> Grow(const std::function<bool(int)>& stop) {
     const int m = static_cast<int>(points_.rows());
@@ -106,7 +112,9 @@ class Grower {
     wrapped_ = parameters_;
     Points points = points_;
     if (closed_) Turn(*basis, &points);
-    if (LargestDataShortage(*basis, std::vector<double>(wrapped_.data(), wrapped_.data() + wrapped_.size())).num_control_points > 0) {
+    if (LargestDataShortage(*basis,
+                            std::vector<double>(wrapped_.data(), wrapped_.data() + wrapped_.size()))
+            .num_control_points > 0) {
       return std::nullopt;
     }
     const CollocationRows rows(*basis, points, closed_ ? turned_ : parameters_);
@@ -147,7 +155,8 @@ class Grower {
         worst = std::max(worst, squared_distances[end]);
       }
       const Eigen::Index middle = begin + (end - begin) / 2;
-      if (worst > squared_bound_ && end - begin >= 2 && parameters_[middle - 1] < parameters_[middle]) {
+      if (worst > squared_bound_ && end - begin >= 2 &&
+          parameters_[middle - 1] < parameters_[middle]) {
         inner.push_back(0.5 * (parameters_[middle - 1] + parameters_[middle]));
       }
       begin = end;
@@ -156,18 +165,21 @@ class Grower {
     std::vector<double> all;
     const auto p = static_cast<std::size_t>(degree_);
     // One period, or everything between the ends.
-    all.assign(knots->begin() + static_cast<std::ptrdiff_t>(p), knots->end() - static_cast<std::ptrdiff_t>(p));
+    all.assign(knots->begin() + static_cast<std::ptrdiff_t>(p),
+               knots->end() - static_cast<std::ptrdiff_t>(p));
     all.insert(all.end(), inner.begin(), inner.end());
     std::sort(all.begin(), all.end());
     const std::size_t spans = all.size() - 1;
     knots->clear();
     for (std::size_t i = 0; i < p; ++i) {
       const std::size_t turns = (p - i + spans - 1) / spans;
-      knots->push_back(closed_ ? all[turns * spans - (p - i)] - static_cast<double>(turns) : all.front());
+      knots->push_back(closed_ ? all[turns * spans - (p - i)] - static_cast<double>(turns)
+                               : all.front());
     }
     knots->insert(knots->end(), all.begin(), all.end());
     for (std::size_t i = 1; i <= p; ++i) {
-      knots->push_back(closed_ ? all[i % spans] + static_cast<double>(1 + (i / spans)) : all.back());
+      knots->push_back(closed_ ? all[i % spans] + static_cast<double>(1 + (i / spans))
+                               : all.back());
     }
     return true;
   }

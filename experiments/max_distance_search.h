@@ -1,16 +1,11 @@
 #ifndef BATTEN_EXPERIMENTS_MAX_DISTANCE_SEARCH_H_
 #define BATTEN_EXPERIMENTS_MAX_DISTANCE_SEARCH_H_
 
-#include <functional>
 #include <optional>
 
-#include "experiments/tracked_curve.h"
+#include "experiments/knot_removal.h"
 
 namespace batten {
-
-/// Asked now and then, with the number of control points so far and which part of the work is done
-/// (0..1, a guess); false ends the search.
-using SearchWatch = std::function<bool(int num_control_points, double fraction)>;
 
 /// A curve with few control points, no data point farther from it than `bound`: knots are inserted
 /// until it is so (GrowCurve) and then taken out again, one by one and in batches, while control
@@ -24,9 +19,6 @@ using SearchWatch = std::function<bool(int num_control_points, double fraction)>
 std::optional<TrackedCurve> SearchFewControlPoints(int degree, bool closed, const Points& points,
                                                    const Eigen::VectorXd& parameters, double bound,
                                                    const SearchWatch& watch);
-
-/// Least number of control points it ends at.
-inline int FewestControlPoints(int degree, bool closed) { return closed ? 3 : degree + 1; }
 
 }  // namespace batten
 

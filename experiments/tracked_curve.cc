@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "splines/basis_functions.h"
 
@@ -45,6 +46,36 @@ void TrackedCurve::RemoveKnot(int i) {
   Points points(n - 1, dimension());
   points.topRows(gone) = control_points_.topRows(gone);
   points.bottomRows(n - 1 - gone) = control_points_.bottomRows(n - 1 - gone);
+  control_points_ = std::move(points);
+}
+
+void TrackedCurve::InsertKnot(double t) {
+  // Boehm: new P_i = a_i P_i + (1 - a_i) P_(i-1), a_i = (t - U(i)) / (U(i + p) - U(i)), for i =
+  // k-p+1..k; P_i before, P_(i-1) after.
+  const int n = num_control_points();
+  const int p = degree_;
+  const int span = SpanOf(t);
+  const int first = closed_ ? span - p + 1 : 0;
+  Points points(n + 1, dimension());
+  for (int j = 0; j <= n; ++j) {
+    const int i = first + j;
+    double share = i <= span - p ? 1.0 : 0.0;
+    if (i > span - p && i <= span) share = (t - Knot(i)) / (Knot(i + p) - Knot(i));
+    for (int c = 0; c < dimension(); ++c) {
+      points(j, c) = (share > 0.0 ? share * ControlPoint(i)[c] : 0.0) +
+                     (share < 1.0 ? (1.0 - share) * ControlPoint(i - 1)[c] : 0.0);
+    }
+  }
+  if (closed_) {
+    std::vector<double> knots;
+    for (int j = 0; j <= n; ++j) {
+      const int i = first + j;
+      knots.push_back(i <= span ? Knot(i) : i == span + 1 ? t : Knot(i - 1));
+    }
+    knots_ = std::move(knots);
+  } else {
+    knots_.insert(knots_.begin() + span + 1, t);
+  }
   control_points_ = std::move(points);
 }
 

@@ -49,9 +49,14 @@ class TrackedCurve {
   /// Takes knot i and a control point out; the others and all parameters stay what they are.
   void RemoveKnot(int i);
 
+  /// A knot at t, not one of the knots: the curve stays the same.
+  void InsertKnot(double t);
+
   double parameter(int point) const { return parameters_[point]; }
   const Eigen::VectorXd& parameters() const { return parameters_; }
-  const double* point(int i) const { return points_->data() + static_cast<std::ptrdiff_t>(i) * dimension(); }
+  const double* point(int i) const {
+    return points_->data() + static_cast<std::ptrdiff_t>(i) * dimension();
+  }
   /// Squared distance at the parameter, as Follow left it.
   double squared_distance(int point) const { return squared_distances_[point]; }
   const Eigen::VectorXd& squared_distances() const { return squared_distances_; }

@@ -13,7 +13,7 @@ namespace batten {
 namespace {
 
 /// What goes with a search: the data, the kind of curve, where to start, what to write.
-constexpr const char* kAllowed[] = {"problem", "closed", "degree",           "parameters", "out",
+constexpr const char* kAllowed[] = {"problem", "closed", "degree",           "parameters",  "out",
                                     "figure",  "quiet",  "curvature_figure", "max_distance"};
 
 }  // namespace
@@ -32,7 +32,8 @@ bool CheckMaxDistanceFlags(const std::vector<FlagInfo>& flags, const FitSpec& sp
     const bool is_allowed = std::any_of(std::begin(kAllowed), std::end(kAllowed),
                                         [&](const char* name) { return flag.name == name; });
     if (is_allowed || !WasGiven(flag.name)) continue;
-    *error = "--" + flag.name + ": nothing is allowed beside --max_distance, whose search has its " +
+    *error = "--" + flag.name +
+             ": nothing is allowed beside --max_distance, whose search has its " +
              "own control points, knots, parameters and method";
     return false;
   }
@@ -41,14 +42,14 @@ bool CheckMaxDistanceFlags(const std::vector<FlagInfo>& flags, const FitSpec& sp
                          "uniform, chord_length or centripetal, where --max_distance starts from");
     return false;
   }
-  const bool is_plain =
-      std::all_of(spec.terms.begin(), spec.terms.end(), [](const NameSpec& term) {
-        return term.name == "interpolation" && term.options.empty();
-      });
+  const bool is_plain = std::all_of(spec.terms.begin(), spec.terms.end(), [](const NameSpec& term) {
+    return term.name == "interpolation" && term.options.empty();
+  });
   if (!is_plain || !spec.constraints.empty() || spec.guard.has_value() ||
       spec.parameter_kind != ParameterKind::kFixed) {
-    *error = "--max_distance: the named problem has terms, constraints or free parameters; allowed: "
-             "distances alone";
+    *error =
+        "--max_distance: the named problem has terms, constraints or free parameters; allowed: "
+        "distances alone";
     return false;
   }
   return true;

@@ -14,7 +14,8 @@ FlagInfo MaxDistanceFlag();
 bool AsksForMaxDistance();
 double MaxDistance();
 /// Of the flags of the command, those that say how a curve of given knots is solved for are refused
-/// beside --max_distance. Also what a named problem has of them. False with one sentence in `error`.
+/// beside --max_distance. Also what a named problem has of them. False with one sentence in
+/// `error`.
 bool CheckMaxDistanceFlags(const std::vector<FlagInfo>& flags, const FitSpec& spec,
                            std::string* error);
 

@@ -12,7 +12,7 @@ run=(cmake g++ gnuplot-nox libceres-dev libeigen3-dev libgflags-dev libgoogle-gl
      libmd4c-dev libmd4c-html0-dev ninja-build nlohmann-json3-dev)
 test=("${run[@]}" libgmock-dev libgtest-dev)
 ci=("${test[@]}" clang-format clang-tidy git)
-bench=("${run[@]}" libbenchmark-dev liblbfgs-dev python3-scipy)
+bench=("${run[@]}" libbenchmark-dev liblbfgs-dev libsisl-dev python3-scipy)
 
 case "${1-}" in
   run) wanted=("${run[@]}") ;;
