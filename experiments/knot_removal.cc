@@ -207,8 +207,7 @@ class KnotRemoval {
 }  // namespace
 
 bool IsDetermined(const TrackedCurve& curve) {
-  const auto basis =
-      BsplineBasis::Make(curve.degree(), curve.closed(), curve.AllKnots(), nullptr);
+  const auto basis = BsplineBasis::Make(curve.degree(), curve.closed(), curve.AllKnots(), nullptr);
   if (!basis.has_value()) return false;
   std::vector<double> parameters;
   for (const double t : curve.parameters()) parameters.push_back(basis->Wrap(t));

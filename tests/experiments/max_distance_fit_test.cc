@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "experiments/audit_curve.h"
-#include "splines/knot_rules.h"
 
 namespace batten {
 namespace {
@@ -159,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Data, MaxDistanceOnRealCurves,
                          ::testing::Values(RealCurve{"coasts/great_britain_10m.csv", true, 2e-2},
                                            RealCurve{"curves3d/gps_hike_xyz_open.csv", false, 1e-2},
                                            RealCurve{"animals/squirrel_2000.csv", true, 1e-3}),
-                         [](const auto& info) { return "Curve" + std::to_string(info.index); });
+                         [](const auto& curve) { return "Curve" + std::to_string(curve.index); });
 
 /// Samples of a cubic with uneven knots, at places that are not its arc length.
 DataSet SamplesOf(const BsplineCurve& curve, int count) {
