@@ -78,11 +78,10 @@ void CurveWindow::CollectPoints() {
 
 void CurveWindow::CollectGaps() {
   const int m = curve_->num_points();
-  int last = -2;  // -1 is the gap before an open curve's first point
+  int last = -1;
   for (const int i : points_) {
     for (const int gap : {i - 1, i}) {
-      if (gap <= last || (!curve_->closed() && gap > m - 1)) continue;
-      if (curve_->closed() && gap < 0) continue;
+      if (gap <= last || (!curve_->closed() && gap == m - 1)) continue;
       gaps_.push_back(gap);
       last = gap;
     }
@@ -90,25 +89,22 @@ void CurveWindow::CollectGaps() {
 }
 
 void CurveWindow::AddSamples(int gap, std::vector<Sample>* samples) const {
-  // The nearest one beside a chord is compared; a chord beyond an end is a point.
   constexpr double kBulge = 0.25;
   constexpr int kMostSamples = 4;
   const int m = curve_->num_points();
   const bool closed = curve_->closed();
-  const int left = std::max(gap, 0);
-  const int right = closed ? (gap + 1) % m : std::min(gap + 1, m - 1);
-  double begin = gap < 0 ? curve_->domain_begin() : curve_->parameter(left);
-  double step = (gap + 1 >= m && !closed ? curve_->domain_end() : curve_->parameter(right)) - begin;
+  const int right = (gap + 1) % m;
+  const double begin = curve_->parameter(gap);
+  double step = curve_->parameter(right) - begin;
   if (closed) step -= curve_->period() * std::round(step / curve_->period());
-  const bool is_end = !closed && (gap < 0 || gap + 1 >= m);
-  if (std::abs(step) < (is_end ? 1e-6 : 0.02) * mean_span_) return;
+  if (std::abs(step) < 0.02 * mean_span_) return;
   const int span = curve_->SpanOf(begin + 0.5 * step);
   const double share = std::abs(step) / (curve_->Knot(span + 1) - curve_->Knot(span));
   constexpr double kSmallShare = 0.1;
-  if (share < kSmallShare && !is_end) return;
+  if (share < kSmallShare) return;
   const int count = std::clamp(static_cast<int>(std::ceil(6.0 * share)), 1, kMostSamples);
   const int d = curve_->dimension();
-  const double* const a = curve_->point(left);
+  const double* const a = curve_->point(gap);
   const double* const b = curve_->point(right);
   double squared_length = 0.0;
   for (int c = 0; c < d; ++c) squared_length += (b[c] - a[c]) * (b[c] - a[c]);

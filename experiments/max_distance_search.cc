@@ -127,12 +127,16 @@ std::optional<TrackedCurve> SearchFewControlPoints(int degree, bool closed, cons
   const SearchWatch ask = [&](int num_control_points, double fraction) {
     return went_on = went_on && watch(num_control_points, fraction);
   };
-  std::optional<TrackedCurve> curve =
+  const std::optional<TrackedCurve> descended =
       DescendFromCoarse(degree, closed, points, parameters, bound, ask);
-  if (!went_on || curve.has_value()) return curve;
-  curve = GrowWatched(degree, closed, points, parameters, bound, ask);
-  if (!curve.has_value() || !RemoveKnots(bound, ask, &*curve)) return std::nullopt;
-  return curve;
+  if (!went_on) return std::nullopt;
+  std::optional<TrackedCurve> direct = GrowWatched(degree, closed, points, parameters, bound, ask);
+  if (direct.has_value() && !RemoveKnots(bound, ask, &*direct)) return std::nullopt;
+  if (!went_on) return std::nullopt;
+  const bool is_fewer =
+      descended.has_value() &&
+      (!direct.has_value() || descended->num_control_points() <= direct->num_control_points());
+  return is_fewer ? descended : direct;
 }
 
 }  // namespace batten

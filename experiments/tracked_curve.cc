@@ -125,6 +125,11 @@ void TrackedCurve::Follow(int point_index, int iterations, double low, double hi
     return sum;
   };
   double t = std::clamp(parameters_[point_index], low, high);
+  if (!closed_ && (point_index == 0 || point_index == num_points() - 1)) {
+    // An open curve ends where its data do: no tail without data.
+    t = point_index == 0 ? domain_begin() : domain_end();
+    iterations = 0;
+  }
   Evaluate(SpanOf(t), t, 2, values);
   double best = squared_distance(values);
   for (int i = 0; i < iterations; ++i) {

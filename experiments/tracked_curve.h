@@ -72,7 +72,8 @@ class TrackedCurve {
   /// C, C', ..., C^(max_derivative) at t by the polynomial of span k, result[k * d + c].
   void Evaluate(int span, double t, int max_derivative, double* result) const;
   /// Moves the parameter of a data point to the foot by `iterations` safeguarded Newton steps that
-  /// never raise its distance, inside [low, high].
+  /// never raise its distance, inside [low, high]. The first and the last point of an open curve
+  /// stay at its ends.
   void Follow(int point, int iterations, double low, double high);
   void FollowAll(int iterations);
 
