@@ -79,6 +79,19 @@ std::string CurveBlock(const BsplineCurve& curve) {
   return text + Line(basis.domain_end(), point.data(), d);
 }
 
+/// Where the spans of a curve with given knots meet.
+std::string KnotBlock(const BsplineCurve& curve) {
+  const BsplineBasis& basis = curve.basis();
+  std::string text = "# knots\n" + ColumnNames(curve.dimension());
+  std::vector<double> point(static_cast<std::size_t>(curve.dimension()));
+  for (int k = basis.first_span(); k <= basis.last_span() + 1; ++k) {
+    const double t = basis.knots()[static_cast<std::size_t>(k)];
+    curve.Evaluate(t, 0, point.data());
+    text += Line(t, point.data(), curve.dimension());
+  }
+  return text;
+}
+
 /// The axes' ranges: data and control points, with a margin that is alike for all.
 std::vector<FigureAxis> Axes(const CurveFit& fit, const Points& control_points) {
   constexpr double kMargin = 0.04;
@@ -134,11 +147,14 @@ std::string Styles(int num_points, int num_control_points) {
          "set style line 2 linecolor rgb '#000000' linewidth 0.6 pointtype 4 pointsize " +
          ShortNumber(control, 2) + "  # control polygon\n" +
          "set style line 3 linecolor rgb '#d81010' linewidth 1.6  # curve\n"
+         "set style line 4 linecolor rgb '#108010' pointtype 7 pointsize " +
+         ShortNumber(std::clamp(4.0 / std::sqrt(num_control_points), 0.15, 0.45), 2) +
+         "  # knots\n"
          "set border 3 linewidth 0.8\n"
          "set tics nomirror out scale 0.6\n";
 }
 
-std::string PlotCommand(const FigurePanel& panel, bool dense) {
+std::string PlotCommand(const FigurePanel& panel, bool dense, bool with_knots) {
   const std::string columns = panel.horizontal.Column() + ":" + panel.vertical.Column();
   const auto layer = [&columns](const std::string& index, const std::string& style) {
     return "DATA index " + index + " using " + columns + " with " + style + " notitle";
@@ -147,9 +163,10 @@ std::string PlotCommand(const FigurePanel& panel, bool dense) {
   const std::string polygon = layer("1", "linespoints linestyle 2");
   const std::string curve = layer("2", "lines linestyle 3");
   const std::string next = ", \\\n     ";
+  const std::string knots = with_knots ? next + layer("3", "points linestyle 4") : "";
   return "plot " +
          (dense ? data + next + polygon + next + curve : polygon + next + curve + next + data) +
-         "\n";
+         knots + "\n";
 }
 
 /// In the middle above the panels. A long name gives way first.
@@ -164,7 +181,7 @@ std::string TitleCommand(const std::string& name, const std::string& rest, int w
 }
 
 /// A plot of nothing over the whole width: only there the entries stand in one line.
-std::string Legend(int step) {
+std::string Legend(int step, bool with_knots) {
   return "unset border\nunset tics\nunset xlabel\nunset ylabel\n"
          "set lmargin at screen 0\nset rmargin at screen 1\n"
          "set bmargin at screen 0\nset tmargin at screen 1\n"
@@ -173,7 +190,9 @@ std::string Legend(int step) {
          "plot NaN with points linestyle 1 pointsize 0.45 title " +
          GnuplotString(DataName(step)) +
          ", \\\n     NaN with linespoints linestyle 2 pointsize 0.35 title 'control polygon', \\\n"
-         "     NaN with lines linestyle 3 title 'curve'\n";
+         "     NaN with lines linestyle 3 title 'curve'" +
+         (with_knots ? ", \\\n     NaN with points linestyle 4 pointsize 0.45 title 'knots'" : "") +
+         "\n";
 }
 
 }  // namespace
@@ -188,19 +207,22 @@ FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::
   const int m = static_cast<int>(fit->data().points.rows());
   const int n = fit->basis().num_control_points();
   const int step = (m + kMostPoints - 1) / kMostPoints;
-  const std::string data = DataBlock(*fit, fit->Parameters(run.x), step) + "\n\n" +
-                           PolygonBlock(fit->basis(), control_points) + "\n\n" +
-                           CurveBlock(fit->Curve(run.x));
+  const bool with_knots = !fit->spec().given_knots.empty();
+  const BsplineCurve curve = fit->Curve(run.x);
+  std::string data = DataBlock(*fit, fit->Parameters(run.x), step) + "\n\n" +
+                     PolygonBlock(fit->basis(), control_points) + "\n\n" + CurveBlock(curve);
+  if (with_knots) data += "\n\n" + KnotBlock(curve);
   const FigureCanvas canvas = LayOutPanels(Panels(*fit, control_points), fit->dimension() > 1);
   const std::string counts = ": " + std::to_string(m) + " points, " + std::to_string(n) +
                              " control points, " + run.solver.ToString();
   std::string commands =
       Styles(m, n) + TitleCommand(problem.name(), counts, canvas.width) + "set multiplot\n";
   for (const FigurePanel& panel : canvas.panels) {
-    commands += PanelCommands(canvas, panel) + PlotCommand(panel, IsDense(m)) + "unset label 1\n";
+    commands += PanelCommands(canvas, panel) + PlotCommand(panel, IsDense(m), with_knots) +
+                "unset label 1\n";
   }
-  return DrawFigure(stem, data, commands + Legend(step) + "unset multiplot\n", canvas.width,
-                    canvas.height, batch);
+  return DrawFigure(stem, data, commands + Legend(step, with_knots) + "unset multiplot\n",
+                    canvas.width, canvas.height, batch);
 }
 
 }  // namespace batten

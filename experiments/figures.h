@@ -10,6 +10,7 @@
 namespace batten {
 
 /// The fit at the end of `run`: data blue, control polygon black, curve red, axes of equal scale.
+/// Knots that were given or searched for are green.
 /// Dimension 1: against t; 3: the projections xy, xz, yz; 4: xy and zw. Of more than 4,000 points
 /// every k-th is drawn; from 400 on they are small, light, and below the rest.
 FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::string& stem,

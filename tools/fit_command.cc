@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "experiments/atomic_file.h"
 #include "experiments/curvature_figure.h"
 #include "experiments/figures.h"
 #include "experiments/fit_report.h"
+#include "experiments/max_distance_fit.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
 #include "experiments/trace.h"
@@ -15,6 +17,7 @@
 #include "tools/fit_request.h"
 #include "tools/fit_summary.h"
 #include "tools/interrupts.h"
+#include "tools/max_distance_flags.h"
 #include "tools/output_files.h"
 #include "tools/progress.h"
 #include "tools/run_flags.h"
@@ -191,6 +194,45 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
   return kNotReached;
 }
 
+bool SearchWithProgress(const FitRequest& request, MaxDistanceFit* fit, std::string* error) {
+  std::optional<DataSet> data = ReadDataSet(request.data_path, error);
+  if (!data.has_value()) return false;
+  FitSpec spec = request.spec;
+  // A rule of its own where the user names none: distances are along the curve.
+  if (!WasGiven("parameters")) spec.parameters = Parameterization::kChordLength;
+  const InterruptibleRun interruptible;
+  Progress progress(FLAGS_quiet);
+  const auto watch = [&](int num_control_points, double fraction) {
+    if (progress.IsDue()) {
+      progress.Show(fraction, std::to_string(num_control_points) + " control points");
+    }
+    return !InterruptRequested();
+  };
+  if (FitWithinDistance(*std::move(data), spec, MaxDistance(), watch, fit, error)) return true;
+  if (!InterruptRequested()) *error = request.source + ": " + *error;
+  return false;
+}
+
+int SearchAndWrite(const FitRequest& request, CommandOutput* output) {
+  MaxDistanceFit fit;
+  if (!SearchWithProgress(request, &fit, &output->error)) {
+    return InterruptRequested() ? kInterruptedStatus : kBadInput;
+  }
+  const RunSpec spec;
+  const FitReport report = MeasureFit(*fit.problem, fit.run, spec);
+  Written written;
+  if (!WriteFiles(*fit.problem, fit.run, spec, report, {}, &written, &output->error)) {
+    return kBadInput;
+  }
+  output->results = FitSummary(request.label, *fit.problem, fit.run, report, written.files);
+  if (report.audited && !report.verdict.holds) {
+    output->error = "audit: " + fit.run.solver.ToString() + " " + report.verdict.failure;
+    return kDisagreement;
+  }
+  if (!written.problem.empty()) return Refuse(written.problem, output);
+  return kDone;
+}
+
 int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
   std::vector<NameSpec> solvers;
   std::string* const error = &output->error;
@@ -207,7 +249,11 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
   }
   FitRequest request;
   if (!MakeFitRequest(positional, &request, error)) return kBadInput;
+  if (AsksForMaxDistance() && !CheckMaxDistanceFlags(FitCommand().flags, request.spec, error)) {
+    return kBadInput;
+  }
   if (!CheckOutputs(Outputs(), request.input_files, error)) return kBadInput;
+  if (AsksForMaxDistance()) return SearchAndWrite(request, output);
   RunSpec spec = RunSpecFromFlags();
   spec.keep_iterates = WasGiven("iterates");
   // Without its file the trace only tells the observed rate, which is not worth all memory.
@@ -233,7 +279,8 @@ Command FitCommand() {
   command.examples = {
       "batten fit data/animals/rhino_100.csv --closed --control_points=80 --out=fit.json",
       "batten fit --problem=rhino --solver=lspia/step=optimal --trace=trace.csv "
-      "--figure=rhino.svg"};
+      "--figure=rhino.svg",
+      "batten fit data/animals/rhino_2000.csv --closed --max_distance=0.5 --figure=rhino.svg"};
   command.flags = FitRequestFlags();
   command.flags.push_back(
       TextFlag("solver", "SOLVER", "a solver of batten list solvers, with options or without"));

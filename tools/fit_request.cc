@@ -7,6 +7,7 @@
 #include "tools/fairing_flags.h"
 #include "tools/fitted_points.h"
 #include "tools/knot_file.h"
+#include "tools/max_distance_flags.h"
 #include "tools/run_flags.h"
 
 namespace {
@@ -21,7 +22,7 @@ DEFINE_bool(closed, kDefaults.closed,
 DEFINE_int32(degree, kDefaults.degree, "Degree of the spline.");
 DEFINE_int32(control_points, kDefaults.control_points,
              "Number of control points; an open curve needs degree + 1 or more. Required unless "
-             "--knots are numbers or --problem says it.");
+             "--knots are numbers, --problem says it, or --max_distance searches for it.");
 DEFINE_string(parameters, batten::ToString(*kDefaults.parameters),
               "Parameters of the points; given: the column t of FILE.");
 DEFINE_string(knots, batten::ToString(kDefaults.knots),
@@ -221,6 +222,7 @@ std::vector<FlagInfo> FitRequestFlags() {
       SwitchFlag("keep_order"),
       TextFlag("guard", "GUARD", "none, length or bending, with /weight=W"),
       TextFlag("constraints", "LIST", "constraints of docs/constraints.md, with commas between")};
+  flags.push_back(MaxDistanceFlag());
   for (FlagInfo& flag : FairingFlags()) flags.push_back(std::move(flag));
   return flags;
 }
@@ -246,7 +248,7 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
       !ApplyGuardFlag(spec, error) || !ApplyConstraints(spec, error)) {
     return false;
   }
-  if (spec->given_knots.empty()) {
+  if (spec->given_knots.empty() && !AsksForMaxDistance()) {
     const int fewest = spec->closed ? 1 : spec->degree + 1;
     if (spec->control_points < fewest) {
       const std::string found =

@@ -22,7 +22,7 @@ struct FitRequest {
 };
 
 /// Flags that say what is fitted: --problem, --closed, --degree, --control_points, --parameters,
-/// --knots, --ends, --domain, --terms, --start.
+/// --knots, --ends, --domain, --terms, --start, --max_distance and more.
 std::vector<FlagInfo> FitRequestFlags();
 
 /// From those flags and the positional FILE; a flag that is given overrides the named problem's

@@ -13,7 +13,7 @@ run=(cmake g++ gnuplot-nox libceres-dev libeigen3-dev libgflags-dev libgoogle-gl
 test=("${run[@]}" libgmock-dev libgtest-dev liblbfgs-dev libnlopt-dev)
 ci=("${test[@]}" clang-format clang-tidy git)
 page=("${run[@]}" chromium fonts-dejavu-core python3)
-bench=("${run[@]}" libbenchmark-dev liblbfgs-dev python3-scipy)
+bench=("${run[@]}" libbenchmark-dev liblbfgs-dev libsisl-dev python3-scipy)
 
 case "${1-}" in
   run) wanted=("${run[@]}") ;;
