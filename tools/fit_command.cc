@@ -195,7 +195,7 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
 }
 
 bool SearchWithProgress(const FitRequest& request, MaxDistanceFit* fit, std::string* error) {
-  std::optional<DataSet> data = ReadDataSet(request.data_path, error);
+  std::optional<DataSet> data = LoadData(request.entry, error);
   if (!data.has_value()) return false;
   FitSpec spec = request.spec;
   // A rule of its own where the user names none: distances are along the curve.
