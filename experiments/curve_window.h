@@ -46,6 +46,8 @@ class CurveWindow {
     double squared_bound;
     double ratio;  // its s
   };
+  /// Points far inside the bound keep this much of a weight, so that they go on holding the curve.
+  static constexpr double kFloor = 0.05;
   static constexpr int kMaxColumns = kMaxOrder * kMaxDimension + 2 * kMaxDegree;
   struct State {
     std::vector<double> control_points;  // of the window, in its order
@@ -66,6 +68,8 @@ class CurveWindow {
   /// Whether control point or knot i moves, and the first unknown of its place in the band: place j
   /// holds control point j and knot j + (p + 1) / 2. Not taken modulo anything where all move.
   bool ColumnOf(int i, int first, int count, int place, int* column) const;
+  /// (ratio + kFloor)^(power / 2), power even.
+  static double Raised(double ratio, int power);
   double Value(int power) const;
   /// Gradient / q and Hessian / q of the value, Gauss-Newton but for the power.
   void Assemble(int power, bool at_parameters);
