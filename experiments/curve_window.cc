@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace batten {
 CurveWindow::CurveWindow(TrackedCurve* curve, double bound, int first_knot, int last_knot,
