@@ -178,8 +178,8 @@ class Grower {
     }
     knots->insert(knots->end(), all.begin(), all.end());
     for (std::size_t i = 1; i <= p; ++i) {
-      knots->push_back(closed_ ? all[i % spans] + static_cast<double>(1 + (i / spans))
-                               : all.back());
+      const std::size_t turns = 1 + i / spans;
+      knots->push_back(closed_ ? all[i % spans] + static_cast<double>(turns) : all.back());
     }
     return true;
   }
