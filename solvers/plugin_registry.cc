@@ -62,13 +62,13 @@ std::string PluginRegistry::WhyNot() const {
   for (const DataReader& reader : readers_) readers.added.push_back(reader.name);
   std::size_t count = 0;
   for (const Kind* kind : {&solvers, &rules, &terms, &problems, &readers}) {
-    const std::string why = WhyNotOf(*kind);
+    std::string why = WhyNotOf(*kind);
     if (!why.empty()) return why;
     count += kind->added.size();
   }
   if (count == 0) return "registers nothing";
   for (const DataReader& reader : readers_) {
-    const std::string why = DataReaderRegistry::Global().WhyNot(reader);
+    std::string why = DataReaderRegistry::Global().WhyNot(reader);
     if (!why.empty()) return why;
   }
   return "";
