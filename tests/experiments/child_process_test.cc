@@ -97,7 +97,7 @@ TEST_F(Child, ThatSleepsIsKilled) {
 TEST_F(Child, ThatWorksForTooLongIsKilled) {
   limits_.cpu_seconds = 1.0;
   const ChildEnd end = Run([] {
-    for (volatile int k = 0;; k = k + 1) {
+    for (volatile unsigned k = 0;; k = k + 1U) {
     }
     return std::string("x");
   });
