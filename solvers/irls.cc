@@ -47,7 +47,7 @@ std::string IrlsSolver::WhyUnsupported(const Objective& objective) const {
   }
   const Problem& problem = objective.problem();
   const std::string name = "irls:" + base_->Info().name;
-  const std::string why = WhyNoBounds(objective, name);
+  std::string why = WhyNoBounds(objective, name);
   if (!why.empty()) return why;
   std::vector<const RowSource*> sources;
   for (const Problem::TermInstance& term : problem.terms()) {
