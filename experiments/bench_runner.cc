@@ -33,19 +33,6 @@ bool HasTrace(const nlohmann::json& row, const std::string& path) {
   return lines == rows + 1;
 }
 
-/// The last line of a log, without what no message may hold.
-std::string LastLine(const std::string& path) {
-  constexpr std::size_t kLongest = 300;
-  std::ifstream file(path, std::ios::binary);
-  std::string last;
-  for (std::string line; std::getline(file, line);) {
-    if (!line.empty()) last = line.substr(0, kLongest);
-  }
-  std::replace_if(
-      last.begin(), last.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
-  return last;
-}
-
 }  // namespace
 
 BenchRunner::BenchRunner(const BenchSuite& suite, std::vector<BenchCell> cells, BenchFolder folder,
@@ -182,7 +169,7 @@ bool BenchRunner::Attend(std::vector<Running>* running, const Progress& progress
 }
 
 std::string BenchRunner::MessageOf(const ChildEnd& end, const std::string& log) const {
-  const std::string said = end.how == ChildEnd::How::kCrashed ? LastLine(log) : "";
+  const std::string said = end.how == ChildEnd::How::kCrashed ? LastLineOfLog(log) : "";
   return said.empty() ? end.message : end.message + "; its log ends with: " + said;
 }
 

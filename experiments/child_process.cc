@@ -121,6 +121,18 @@ const char* ToString(ChildEnd::How how) {
   return "crashed";
 }
 
+std::string LastLineOfLog(const std::string& path) {
+  constexpr std::size_t kLongest = 300;
+  std::ifstream file(path, std::ios::binary);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty()) last = line.substr(0, kLongest);
+  }
+  std::replace_if(
+      last.begin(), last.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return last;
+}
+
 std::unique_ptr<ChildProcess> ChildProcess::Start(const ChildLimits& limits,
                                                   const std::string& log_file,
                                                   const std::function<std::string()>& work,
@@ -187,6 +199,7 @@ ChildEnd ChildProcess::Finish() {
   }
   pid_ = -1;
   ChildEnd end;
+  end.wait_status = status;
   end.wall_seconds = seconds();
   const auto Seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -202,7 +215,8 @@ ChildEnd ChildProcess::Finish() {
     end.how = ChildEnd::How::kOutOfMemory;
     end.message = "needs more than " + std::to_string(limits_.memory_mb) + " MB of memory";
   } else if (kind == kException) {
-    end.message = "threw an exception: " + answer_.substr(1, answer_.size() - 2);
+    end.thrown = answer_.substr(1, answer_.size() - 2);
+    end.message = "threw an exception: " + end.thrown;
   } else if (is_late_) {
     end.how = ChildEnd::How::kWallLimit;
     end.message = "killed after " + std::to_string(static_cast<long>(limits_.wall_seconds)) +

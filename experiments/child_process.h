@@ -22,12 +22,17 @@ struct ChildEnd {
   How how = How::kCrashed;
   std::string message;  // one sentence, empty if it answered
   std::string answer;
+  std::string thrown;   // what() of an exception that ended the work
+  int wait_status = 0;  // as of wait(2)
   double wall_seconds = 0.0;
   double cpu_seconds = 0.0;
   long peak_memory_kb = 0;
 };
 /// answered, crashed, out_of_memory, wall_limit, cpu_limit.
 const char* ToString(ChildEnd::How how);
+
+/// The last line of what a child printed that is not empty: its first 300 characters, in ASCII.
+std::string LastLineOfLog(const std::string& path);
 
 /// A piece of work in a process of its own, which is a copy of this one (fork without exec: a
 /// program that links Ceres takes 10 ms and more to start). What it prints goes to a log file; it

@@ -1,7 +1,6 @@
 #ifndef BATTEN_TOOLS_LIMITED_PROCESS_H_
 #define BATTEN_TOOLS_LIMITED_PROCESS_H_
 
-#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -14,15 +13,15 @@ struct ProcessLimits {
 
 /// How a child process came to its end.
 struct ProcessEnd {
-  enum class Kind { kReturned, kKilled, kExited, kTimedOut, kOutOfMemory, kThrew, kInterrupted };
+  enum class Kind { kReturned, kFailed, kInterrupted };
   Kind kind = Kind::kReturned;
   std::string output;  ///< What the work returned.
   std::string reason;  ///< One sentence where it did not return.
 };
 
-/// Calls `work` in a copy of this process, which may not take more than `limits` and whose prints
-/// go nowhere: a crash, a hang or a hunger for memory ends the copy alone. Between
-/// InterruptibleRun's, an interrupt ends it.
+/// Calls `work` in a copy of this process (experiments/child_process.h), which may not take more
+/// than `limits` and of whose prints at most the last line is told: a crash, a hang or a hunger for
+/// memory ends the copy alone. Between InterruptibleRun's, an interrupt ends it.
 ProcessEnd RunLimited(const std::function<std::string()>& work, const ProcessLimits& limits);
 
 }  // namespace batten
