@@ -10,18 +10,6 @@
 namespace batten {
 namespace {
 
-/// The term that is the distance from the data and nothing else.
-const char* DistanceTerm(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::kFree:
-      return "free_parameter";
-    case ParameterKind::kProjected:
-      return "foot_point";
-    default:
-      return "interpolation";
-  }
-}
-
 bool Resolve(const Problem::TermInstance& term, NameSpec* name, OptionValues* options) {
   const Term* registered = nullptr;
   std::string error;
@@ -75,7 +63,7 @@ bool IsDistanceTerm(const Problem::TermInstance& term, const CurveFit& fit) {
   NameSpec name;
   std::string error;
   return ParseNameSpec(term.name, &name, &error) &&
-         name.name == DistanceTerm(fit.spec().parameter_kind);
+         name.name == DistanceTermOf(fit.spec().parameter_kind);
 }
 
 bool AddTermsBesideDistances(const Problem& problem, AuditedFit* plain) {

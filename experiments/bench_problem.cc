@@ -24,17 +24,6 @@ class Noise {
   std::mt19937_64 random_;
 };
 
-const char* DistanceTermOf(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::kFree:
-      return "free_parameter";
-    case ParameterKind::kProjected:
-      return "foot_point";
-    default:
-      return "interpolation";
-  }
-}
-
 BsplineBasis TruthBasis(const FitSpec& spec) {
   const EndKnots ends = spec.closed ? EndKnots::kPeriodic : EndKnots::kEndInterpolating;
   std::vector<double> knots = UniformKnots(spec.degree, spec.control_points, ends, 0.0, 1.0);

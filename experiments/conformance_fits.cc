@@ -69,12 +69,6 @@ const std::vector<Kind>& PageSizedKinds() {
   return kinds;
 }
 
-const char* DistanceTerm(ParameterKind kind) {
-  return kind == ParameterKind::kFree        ? "free_parameter"
-         : kind == ParameterKind::kProjected ? "foot_point"
-                                             : "interpolation";
-}
-
 /// Null with one sentence in `error`.
 std::unique_ptr<Problem> MakeKind(const Kind& kind, const std::vector<std::string>& terms,
                                   std::string* error) {
@@ -111,7 +105,7 @@ std::vector<ExampleProblem> ExampleProblemsOf(const std::string& term, bool with
   std::vector<ExampleProblem> problems;
   for (const Kind& kind : SmallKinds()) {
     std::vector<std::string> terms = {term};
-    if (with_distance) terms.insert(terms.begin(), DistanceTerm(kind.parameters));
+    if (with_distance) terms.insert(terms.begin(), DistanceTermOf(kind.parameters));
     std::string error;
     auto problem = MakeKind(kind, terms, &error);
     if (problem != nullptr) problems.push_back({kind.name, std::move(problem)});

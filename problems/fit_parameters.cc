@@ -28,6 +28,17 @@ bool FromString(const std::string& text, ParameterKind* kind) {
   return false;
 }
 
+const char* DistanceTermOf(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kFree:
+      return "free_parameter";
+    case ParameterKind::kProjected:
+      return "foot_point";
+    default:
+      return "interpolation";
+  }
+}
+
 OrderedParameters CurveFit::Order(const Eigen::VectorXd& t) const {
   const int held = setting_.ends_held ? 1 : 0;
   return OrderedParameters(t.segment(held, t.size() - 2 * held),

@@ -244,10 +244,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   }
   const bool is_free = fit->spec_.parameter_kind == ParameterKind::kFree;
   if (fit->spec_.terms.empty()) {
-    const char* const usual = fit->is_projected() ? "foot_point"
-                              : is_free           ? "free_parameter"
-                                                  : "interpolation";
-    fit->spec_.terms.push_back({usual, {}, nullptr});
+    fit->spec_.terms.push_back({DistanceTermOf(fit->spec_.parameter_kind), {}, nullptr});
   }
   if (fit->spec_.guard.has_value()) {
     const auto m = static_cast<int>(fit->data_.points.rows());

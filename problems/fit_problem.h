@@ -30,6 +30,8 @@ inline constexpr double kSmallestTermWeight = 1e-30;
 enum class ParameterKind { kFixed, kFree, kProjected };
 const char* ToString(ParameterKind kind);
 bool FromString(const std::string& text, ParameterKind* kind);
+/// The term that is the distance from the data of this kind and nothing else.
+const char* DistanceTermOf(ParameterKind kind);
 
 /// What is to be fitted to a data set; every field as in problem files and flags.
 struct FitSpec {
