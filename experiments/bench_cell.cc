@@ -45,10 +45,8 @@ void WarmUp(const Problem& problem, const NameSpec& solver, RunSpec spec, int ru
 }
 
 bool WriteTrace(const Problem& problem, const RunResult& run, const std::string& path) {
-  std::vector<std::string> terms;
-  for (const Problem::TermInstance& term : problem.terms()) terms.push_back(term.name);
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << TraceCsv(run.trace, terms);
+  file << RunTraceCsv(problem, run);
   file.close();
   return !file.fail();
 }
@@ -96,14 +94,8 @@ void AddPlace(const BenchSuite& suite, const BenchCell& cell, Json* json) {
   (*json)["identity"] = SolverIdentity(suite.solvers[cell.solver]);
 }
 
-std::string Digits(std::uint64_t value) {
-  char digits[17];
-  std::snprintf(digits, sizeof(digits), "%016llx", static_cast<unsigned long long>(value));
-  return digits;
-}
-
 void AddTruthChecks(const ComparisonRow& row, const RunSpec& spec, Json* json) {
-  (*json)["stream"] = Digits(row.run.stream_hash);
+  (*json)["stream"] = HexDigits(row.run.stream_hash);
   (*json)["stream_points"] = row.run.stream_points;
   (*json)["calls_past_stop"] = row.run.calls_past_stop;
   (*json)["findings"] = FlagsOf(row, spec);
@@ -230,7 +222,7 @@ Json FailedRow(const BenchSuite& suite, const BenchCell& cell, const ChildEnd& e
   Json json = CellJson(row, std::nan(""), RuleOf(suite, cell));
   json["stop"] = ToString(end.how);
   AddPlace(suite, cell, &json);
-  json["stream"] = Digits(0);
+  json["stream"] = HexDigits(0);
   json["stream_points"] = 0;
   json["calls_past_stop"] = 0;
   json["findings"] = {ToString(end.how)};

@@ -77,12 +77,6 @@ Json SessionJson(const BenchSession& session) {
   return json;
 }
 
-std::string ProgramDigits() {
-  ContentHash hash;
-  hash.AddProgram();
-  return hash.Digits();
-}
-
 /// Keys of all cells, whatever the shard, in the order of the suite: what tables are made of.
 std::vector<std::string> OrderedKeys(const BenchSuite& suite) {
   BenchSuite ordered = suite;

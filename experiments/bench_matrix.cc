@@ -1,7 +1,6 @@
 #include "experiments/bench_matrix.h"
 
 #include <algorithm>
-#include <map>
 #include <random>
 #include <sstream>
 
@@ -111,21 +110,9 @@ void AddRule(const BenchSuite& suite, std::ostream* text) {
         << ' ';
 }
 
-/// Read once a run: many cells share one file, which may be large.
-const std::string& FileDigits(const std::string& path) {
-  static auto& known = *new std::map<std::string, std::string>;
-  const auto [place, is_new] = known.try_emplace(path);
-  if (is_new) {
-    ContentHash hash;
-    hash.AddFile(path);
-    place->second = hash.Digits();
-  }
-  return place->second;
-}
-
 std::string Hashed(const BenchProblem& problem, const std::string& text) {
   ContentHash hash;
-  hash.AddProgram();
+  hash.Add(ProgramDigits());
   for (const LoadedPlugin& plugin : LoadedPlugins()) hash.Add(plugin.sha256);
   hash.Add(FileDigits(problem.entry.data_path));
   hash.Add(text);

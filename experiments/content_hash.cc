@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <vector>
 
 namespace batten {
@@ -21,19 +22,25 @@ void ContentHash::AddFile(const std::string& path) {
   }
 }
 
-void ContentHash::AddProgram() {
-  static const std::string program = [] {
-    ContentHash hash;
-    hash.AddFile("/proc/self/exe");
-    return hash.Digits();
-  }();
-  Add(program);
-}
+std::string ContentHash::Digits() const { return HexDigits(hash_); }
 
-std::string ContentHash::Digits() const {
+std::string HexDigits(std::uint64_t value) {
   char digits[17];
-  std::snprintf(digits, sizeof(digits), "%016llx", static_cast<unsigned long long>(hash_));
+  std::snprintf(digits, sizeof(digits), "%016llx", static_cast<unsigned long long>(value));
   return digits;
 }
+
+const std::string& FileDigits(const std::string& path) {
+  static auto& known = *new std::map<std::string, std::string>;
+  const auto [place, is_new] = known.try_emplace(path);
+  if (is_new) {
+    ContentHash hash;
+    hash.AddFile(path);
+    place->second = hash.Digits();
+  }
+  return place->second;
+}
+
+const std::string& ProgramDigits() { return FileDigits("/proc/self/exe"); }
 
 }  // namespace batten

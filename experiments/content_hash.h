@@ -14,15 +14,22 @@ class ContentHash {
   void Add(const std::string& text) { AddBytes(text.data(), text.size()); }
   /// All bytes of the file; one that cannot be read adds nothing.
   void AddFile(const std::string& path);
-  /// The file of the running program, read once.
-  void AddProgram();
 
   std::uint64_t value() const { return hash_; }
-  std::string Digits() const;  ///< 16 hexadecimal ones.
+  std::string Digits() const;
 
  private:
   std::uint64_t hash_ = 14695981039346656037ULL;
 };
+
+/// 16 hexadecimal ones.
+std::string HexDigits(std::uint64_t value);
+
+/// Of all bytes of a file. Read once in the life of the program: many keys share one file, which
+/// may be large.
+const std::string& FileDigits(const std::string& path);
+/// Of the file of the running program.
+const std::string& ProgramDigits();
 
 }  // namespace batten
 

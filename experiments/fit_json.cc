@@ -202,4 +202,10 @@ std::string IteratesJsonLines(const Problem& problem, const RunResult& run) {
   return stream.str();
 }
 
+std::string RunTraceCsv(const Problem& problem, const RunResult& run) {
+  std::vector<std::string> names;
+  for (const Problem::TermInstance& term : problem.terms()) names.push_back(term.name);
+  return TraceCsv(run.trace, names, problem.nonlinear_constraints() != nullptr);
+}
+
 }  // namespace batten

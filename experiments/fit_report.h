@@ -42,6 +42,8 @@ void WriteFitJson(const Problem& problem, const RunResult& run, const RunSpec& s
                   const FitReport& report, std::ostream* stream);
 /// JSON lines {"iteration", "control_points", "parameters"}.
 std::string IteratesJsonLines(const Problem& problem, const RunResult& run);
+/// TraceCsv() with the columns that the problem has.
+std::string RunTraceCsv(const Problem& problem, const RunResult& run);
 
 }  // namespace batten
 

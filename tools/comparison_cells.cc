@@ -32,9 +32,9 @@ Json DisagreementOf(const std::string& problem, const std::string& solver,
 std::string CellKey(const CatalogueEntry& entry, const NameSpec& solver,
                     const ComparisonSpec& spec) {
   ContentHash hash;
-  hash.AddProgram();
-  hash.AddFile(entry.path);
-  hash.AddFile(entry.data_path);
+  hash.Add(ProgramDigits());
+  hash.Add(FileDigits(entry.path));
+  hash.Add(FileDigits(entry.data_path));
   const RunSpec& run = spec.run;
   std::ostringstream text;
   text << entry.name << ' ' << solver.ToString() << ' ' << ToString(run.mode) << ' '

@@ -11,7 +11,6 @@
 #include "experiments/max_distance_fit.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
-#include "experiments/trace.h"
 #include "tools/command.h"
 #include "tools/fairing_flags.h"
 #include "tools/fit_request.h"
@@ -87,12 +86,6 @@ std::vector<OutputFile> Outputs() {
   return outputs;
 }
 
-std::vector<std::string> TermNames(const Problem& problem) {
-  std::vector<std::string> names;
-  for (const Problem::TermInstance& term : problem.terms()) names.push_back(term.name);
-  return names;
-}
-
 /// What a run is written to.
 struct Written {
   std::vector<std::string> files;
@@ -153,9 +146,7 @@ bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spe
   const auto fill_fit = [&](std::ostream* stream) {
     WriteFitJson(problem, run, spec, report, stream);
   };
-  const auto fill_trace = [&](std::ostream* stream) {
-    *stream << TraceCsv(run.trace, TermNames(problem), problem.nonlinear_constraints() != nullptr);
-  };
+  const auto fill_trace = [&](std::ostream* stream) { *stream << RunTraceCsv(problem, run); };
   const auto fill_iterates = [&](std::ostream* stream) {
     *stream << IteratesJsonLines(problem, run);
   };

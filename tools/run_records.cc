@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "experiments/fit_report.h"
-#include "experiments/trace.h"
 #include "problems/fit_problem.h"
 #include "tools/comparison_cells.h"
 
@@ -33,12 +32,6 @@ std::string CurveJson(const CurveFit& fit) {
       {"periodic", fit.basis().periodic()}, {"knots", fit.basis().knots()},
       {"num_points", data.rows()},          {"points", std::move(points)}};
   return json.dump() + "\n";
-}
-
-std::vector<std::string> TermNames(const Problem& problem) {
-  std::vector<std::string> names;
-  for (const Problem::TermInstance& term : problem.terms()) names.push_back(term.name);
-  return names;
 }
 
 /// The folders of the records.
@@ -79,8 +72,8 @@ bool WriteRunRecords(const CatalogueEntry& entry, const ComparisonResult& result
     const RunResult& run = result.rows[k].run;
     if (!run.skipped.empty()) continue;
     const std::string key = CellKey(entry, result.spec.solvers.at(k), result.spec);
-    if (batch->Write(Path(folder, "traces", key + ".csv"), TraceCsv(run.trace, TermNames(problem)),
-                     error) == nullptr) {
+    if (batch->Write(Path(folder, "traces", key + ".csv"), RunTraceCsv(problem, run), error) ==
+        nullptr) {
       return false;
     }
     if (has_iterates && batch->Write(Path(folder, "iterates", key + ".jsonl"),
