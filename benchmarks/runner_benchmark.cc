@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -54,7 +55,8 @@ double CostOfCell(double seconds, AppendOnlyFile* file) {
 
 void BM_RunnerCost(benchmark::State& state) {
   const double seconds = 1e-3 * static_cast<double>(state.range(0));
-  const std::string path = "/tmp/runner_benchmark_" + std::to_string(getpid());
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("runner_benchmark_" + std::to_string(getpid()));
   std::string error;
   double cost = 0.0;
   {

@@ -29,8 +29,7 @@ std::string WhyNoName(const std::string& name) {
   if (!has_letters || name.back() == '_' || name.find("__") != std::string::npos) {
     return "found " + Quoted(name, kLongestName) +
            " as a name; allowed: a lower-case letter, then lower-case letters, digits and single "
-           "_, "
-           "at most " +
+           "_, at most " +
            std::to_string(kLongestName);
   }
   // CMake has targets of these names already.
@@ -94,8 +93,8 @@ int RunNew(const std::vector<std::string>& positional, CommandOutput* output) {
   const bool is_written =
       files.Write(source, Filled(is_solver ? kSolverSkeleton : kTermSkeleton, name),
                   &output->error) != nullptr &&
-      files.Write(build, Filled(is_solver ? kSolverBuild : kTermBuild, name), &output->error) !=
-          nullptr &&
+      files.Write(build, Filled(std::string(kBuild) + (is_solver ? kSolverTest : kTermTest), name),
+                  &output->error) != nullptr &&
       files.Commit(&output->error);
   if (!is_written) {
     std::filesystem::remove(name, code);

@@ -48,20 +48,7 @@ class @CLASS@ final : public batten::SimpleStepper<@CLASS@> {
 BATTEN_PLUGIN(registry) { registry->AddSolver<@CLASS@>(); }
 )";
 
-const char kSolverBuild[] = R"(# Builds @NAME@.so against the installed Batten alone:
-#   cmake -S . -B build -DCMAKE_PREFIX_PATH=<where Batten was installed> && cmake --build build
-cmake_minimum_required(VERSION 3.25)
-project(@NAME@ LANGUAGES CXX)
-
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release)
-endif()
-find_package(Batten @VERSION@ REQUIRED)
-batten_add_plugin(@NAME@ @NAME@.cc)
-
-enable_testing()
-add_test(NAME conformance COMMAND Batten::batten check $<TARGET_FILE:@NAME@>)
-add_test(NAME comparison
+const char kSolverTest[] = R"(add_test(NAME comparison
   COMMAND Batten::batten compare --problems=rhino --solvers=banded_qr,@NAME@ --max_iterations=200
     --plugins=$<TARGET_FILE:@NAME@>)
 )";
@@ -92,7 +79,12 @@ struct @CLASS@ : batten::TermAtDataPoints {
 BATTEN_PLUGIN(registry) { batten::AddTerm<@CLASS@>(registry); }
 )";
 
-const char kTermBuild[] = R"(# Builds @NAME@.so against the installed Batten alone:
+const char kTermTest[] = R"(add_test(NAME fit
+  COMMAND Batten::batten fit --problem=rhino --terms=@NAME@ --solver=lbfgs
+    --plugins=$<TARGET_FILE:@NAME@>)
+)";
+
+const char kBuild[] = R"(# Builds @NAME@.so against the installed Batten alone:
 #   cmake -S . -B build -DCMAKE_PREFIX_PATH=<where Batten was installed> && cmake --build build
 cmake_minimum_required(VERSION 3.25)
 project(@NAME@ LANGUAGES CXX)
@@ -105,9 +97,6 @@ batten_add_plugin(@NAME@ @NAME@.cc)
 
 enable_testing()
 add_test(NAME conformance COMMAND Batten::batten check $<TARGET_FILE:@NAME@>)
-add_test(NAME fit
-  COMMAND Batten::batten fit --problem=rhino --terms=@NAME@ --solver=lbfgs
-    --plugins=$<TARGET_FILE:@NAME@>)
 )";
 
 }  // namespace batten

@@ -4,10 +4,12 @@
 namespace batten {
 
 // What `batten new` writes. @NAME@ stands for the name, @CLASS@ for the class, @VERSION@ for ours.
+// The CMake file is kBuild with the test of its kind behind.
+extern const char kBuild[];
 extern const char kSolverSkeleton[];
-extern const char kSolverBuild[];
+extern const char kSolverTest[];
 extern const char kTermSkeleton[];
-extern const char kTermBuild[];
+extern const char kTermTest[];
 
 }  // namespace batten
 
