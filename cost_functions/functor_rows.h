@@ -109,8 +109,11 @@ class FunctorRows {
           point = (sites_.points[static_cast<std::ptrdiff_t>(item) * dimension() + c] - center) *
                   setting_.scale;
         }
-        site.mutable_point()[0] = point;
-        functor_(site, points, &result);
+        // Without data a site is the same for all coordinates.
+        if (c == 0 || sites_.points != nullptr) {
+          site.mutable_point()[0] = point;
+          functor_(site, points, &result);
+        }
         rows[(order() + c) * kRowPack + i] = -result.constant * root_factor;
       }
       for (int j = 0; j < order(); ++j) {

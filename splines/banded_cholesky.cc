@@ -296,21 +296,36 @@ void BandedCholesky::Solve(double* x, int dimension) const {
 double BandedCholesky::ConditionEstimate() const {
   if (n_ == 0) return 1.0;
   // Hager 1984 with Higham's changes of 1988: ||N^-1||_1 is the maximum of the convex function
-  // ||N^-1 x||_1 over the unit ball, climbed from corner to corner.
-  std::vector<double> x(n_, 1.0 / n_);
-  std::vector<double> sign;
+  // ||N^-1 x||_1 over the unit ball, climbed from corner to corner. Higham's last vector, of
+  // alternating signs, is solved for beside the first one: a solve waits for its own results.
+  std::vector<double> pair(2 * static_cast<std::size_t>(n_));
+  for (int i = 0; i < n_; ++i) {
+    pair[2 * i] = 1.0 / n_;
+    pair[2 * i + 1] =
+        (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + static_cast<double>(i) / std::max(n_ - 1, 1));
+  }
+  Solve(pair.data(), 2);
+  std::vector<double> x(n_);
+  double alternating = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    x[i] = pair[2 * i];
+    alternating += std::abs(pair[2 * i + 1]);
+  }
   double estimate = 0.0;
   int corner = -1;
+  std::vector<double> sign(n_, 0.0);
   for (int step = 0; step < 5; ++step) {
-    Solve(x.data(), 1);
+    if (step > 0) Solve(x.data(), 1);
     const double norm = OneNorm(x);
     if (step > 0 && !(norm > estimate)) break;
     estimate = norm;
-    const std::vector<double> previous = sign;
-    sign.resize(n_);
-    for (int i = 0; i < n_; ++i) sign[i] = x[i] >= 0.0 ? 1.0 : -1.0;
-    if (sign == previous) break;
-    x = sign;
+    bool changed = false;
+    for (int i = 0; i < n_; ++i) {
+      x[i] = x[i] >= 0.0 ? 1.0 : -1.0;
+      changed = changed || x[i] != sign[i];
+      sign[i] = x[i];
+    }
+    if (!changed) break;
     Solve(x.data(), 1);
     const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
     const int next = static_cast<int>(std::max_element(x.begin(), x.end(), larger) - x.begin());
@@ -320,11 +335,7 @@ double BandedCholesky::ConditionEstimate() const {
     x.assign(n_, 1e-30);
     x[corner] = 1.0;
   }
-  for (int i = 0; i < n_; ++i) {
-    x[i] = (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + static_cast<double>(i) / std::max(n_ - 1, 1));
-  }
-  Solve(x.data(), 1);
-  estimate = std::max(estimate, 2.0 * OneNorm(x) / (3.0 * n_));
+  estimate = std::max(estimate, 2.0 * alternating / (3.0 * n_));
   return std::max(1.0, norm_ * estimate);
 }
 

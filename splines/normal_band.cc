@@ -88,9 +88,44 @@ void NormalBand::Add(const RowBlock& block) {
   }
 }
 
+template <int kWidth, int kDimension, int kRows>
+void NormalBand::AddFew(const RowBlock& block) {
+  // Zeros behind each row: the band's rows are then all updated at full width.
+  double row[kRows][2 * kWidth] = {};
+  double data[kRows][kDimension];
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kWidth; ++j) row[i][j] = block.coefficients[j * kRowPack + i];
+    for (int c = 0; c < kDimension; ++c) {
+      data[i][c] = block.right_hand_sides[c * kRowPack + i];
+      squared_norm_of_data_ += data[i][c] * data[i][c];
+    }
+  }
+  for (int j = 0; j < kWidth; ++j) {
+    const auto column = static_cast<std::size_t>(WrappedColumn(block.first_column + j));
+    double* const target = band_.data() + column * kWidth;
+    for (int k = 0; k < kWidth; ++k) {
+      double sum = row[0][j] * row[0][j + k];
+      for (int i = 1; i < kRows; ++i) sum += row[i][j] * row[i][j + k];
+      target[k] += sum;
+    }
+    double* const right = right_hand_side_.data() + column * kDimension;
+    for (int c = 0; c < kDimension; ++c) {
+      double sum = row[0][j] * data[0][c];
+      for (int i = 1; i < kRows; ++i) sum += row[i][j] * data[i][c];
+      right[c] += sum;
+    }
+  }
+}
+
 void NormalBand::Consume(const RowBlock& block) {
-  WithFixedShape(shape_.width, shape_.dimension,
-                 [&](auto width, auto dimension) { Add<width, dimension>(block); });
+  WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
+    if constexpr (width > 0) {
+      if (block.num_rows == 1) return AddFew<width, dimension, 1>(block);
+      if (block.num_rows == 2) return AddFew<width, dimension, 2>(block);
+      if (block.num_rows == 3) return AddFew<width, dimension, 3>(block);
+    }
+    Add<width, dimension>(block);
+  });
 }
 
 NormalBand NormalBand::FromRows(const RowSource& source) {
@@ -101,10 +136,6 @@ NormalBand NormalBand::FromRows(const RowSource& source) {
 
 bool NormalBand::Overlaps() const {
   return shape_.cyclic && shape_.num_columns < 2 * shape_.width - 1;
-}
-
-int NormalBand::WrappedColumn(int column) const {
-  return column < shape_.num_columns ? column : column % shape_.num_columns;
 }
 
 void NormalBand::MultiplyRow(int j, const double* v, double* product) const {

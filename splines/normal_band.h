@@ -42,9 +42,15 @@ class NormalBand : public RowConsumer {
   /// Consume() for one width and dimension; kWidth < 0 takes both from the shape.
   template <int kWidth, int kDimension>
   void Add(const RowBlock& block);
+  /// Consume() for a block of one pack with kRows rows, row by row into the band: sums over packs
+  /// that are half empty cost more than the rows.
+  template <int kWidth, int kDimension, int kRows>
+  void AddFew(const RowBlock& block);
   /// Several entries of the band stand on one place of N.
   bool Overlaps() const;
-  int WrappedColumn(int column) const;
+  int WrappedColumn(int column) const {
+    return column < shape_.num_columns ? column : column % shape_.num_columns;
+  }
   /// Row j of the product, any j.
   void MultiplyRow(int j, const double* v, double* product) const;
   /// Rows whose entries do not leave 0..n-1.
