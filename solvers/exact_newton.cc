@@ -106,7 +106,7 @@ SolverInfo ExactNewton::Info() const { return NewtonSolver::ClassInfo(); }
 
 std::string ExactNewton::WhyNot(const Objective& objective, const std::string& name) {
   const Problem& problem = objective.problem();
-  const std::string why = WhyNoBounds(objective, name);
+  std::string why = WhyNoBounds(objective, name);
   if (!why.empty()) return why;
   const CurveFit* fit = problem.curve_fit();
   if (fit == nullptr) return name + " needs a curve, whose Hessian is a band; use lbfgs";

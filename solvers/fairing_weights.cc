@@ -34,7 +34,8 @@ NormalBand FairingBand(const Problem& problem, const NormalBand& all) {
 
 std::string FairingWeights::WhyNot(const Objective& objective, const std::string& solver_name) {
   if (!objective.problem().elimination().trivial()) {
-    return solver_name + " weighs fairing by control point without constraints; use fairing_factor=1";
+    return solver_name +
+           " weighs fairing by control point without constraints; use fairing_factor=1";
   }
   for (const Problem::TermInstance& term : objective.problem().terms()) {
     if (IsFairing(term)) return "";
@@ -45,9 +46,7 @@ std::string FairingWeights::WhyNot(const Objective& objective, const std::string
 
 FairingWeights::FairingWeights(const Objective& objective, const NormalBand& all,
                                std::vector<double> factors)
-    : all_(all),
-      factors_(std::move(factors)),
-      fairing_(FairingBand(objective.problem(), all)) {}
+    : all_(all), factors_(std::move(factors)), fairing_(FairingBand(objective.problem(), all)) {}
 
 std::vector<double> FairingWeights::RowSums() const {
   const int n = all_.size(), width = all_.width();

@@ -56,7 +56,7 @@ SolverInfo LspiaSolver::Info() const {
 }
 
 std::string LspiaSolver::WhyUnsupported(const Objective& objective) const {
-  const std::string why = WhyNoUnboundedCurveView(objective, "lspia");
+  std::string why = WhyNoUnboundedCurveView(objective, "lspia");
   if (!why.empty() || !weighs_fairing()) return why;
   if (step_rule_ != "diagonal") {
     return "lspia weighs fairing by control point in steps that each has of its own; use "

@@ -20,9 +20,8 @@ std::unique_ptr<Problem> FairFit(bool closed, const std::string& fairing_weight)
 
 /// N of the interpolation terms or of the fairing terms alone, and A'Q.
 Eigen::MatrixXd NormalOf(const Problem& problem, bool fairing, Eigen::MatrixXd* right) {
-  Eigen::MatrixXd sum =
-      Eigen::MatrixXd::Zero(problem.curve_fit()->basis().num_control_points(),
-                            problem.curve_fit()->basis().num_control_points());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(problem.curve_fit()->basis().num_control_points(),
+                                              problem.curve_fit()->basis().num_control_points());
   for (const Problem::TermInstance& term : problem.terms()) {
     if ((term.name.rfind("fairing", 0) == 0) != fairing) continue;
     const NormalBand band = NormalBand::FromRows(*term.family->rows());
@@ -67,8 +66,8 @@ void ExpectSolves(const Problem& problem, const std::vector<double>& factors,
 TEST(FairingWeights, OfARangeLeadToTheSolutionOfTheirEquations) {
   for (const bool closed : {false, true}) {
     const auto problem = FairFit(closed, "0.001");
-    const SolverTrial trial(*problem,
-                            "lspia/fairing_factor=30/fairing_first=3/fairing_last=7", {100'000});
+    const SolverTrial trial(*problem, "lspia/fairing_factor=30/fairing_first=3/fairing_last=7",
+                            {100'000});
     EXPECT_EQ(trial.outcome.reason, StopReason::kNativeStop) << trial.outcome.message;
     std::vector<double> factors(14, 1.0);
     std::fill(factors.begin() + 3, factors.begin() + 8, 30.0);
@@ -95,7 +94,8 @@ TEST(FairingWeights, MayDifferAtEachControlPoint) {
 
 TEST(FairingWeights, RefuseWhatTheyDoNotWeigh) {
   const auto plain = MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17));
-  EXPECT_THAT(WhyUnsupported(*plain, "lspia/fairing_factor=2"), ::testing::HasSubstr("there is none"));
+  EXPECT_THAT(WhyUnsupported(*plain, "lspia/fairing_factor=2"),
+              ::testing::HasSubstr("there is none"));
   const auto fair = FairFit(false, "0.001");
   for (const char* step : {"optimal", "barzilai_borwein"}) {
     EXPECT_THAT(WhyUnsupported(*fair, "lspia/fairing_factor=2/step=" + std::string(step)),
