@@ -97,11 +97,11 @@ TEST(SubstitutedBand, StaysNarrowWhereTheMapIsLocal) {
   shape.dimension = 1;
   for (const bool cyclic : {false, true}) {
     shape.cyclic = cyclic;
-    const SparseRowMajor z = LocalMap(400, {3, 200, 399}, 7, cyclic, &random);
+    const SparseRowMajor z = LocalMap(400, {30, 200, 399}, 7, cyclic, &random);
     const SubstitutedBand substituted(shape, 2, &z);
     EXPECT_EQ(substituted.band().size(), 397);
     EXPECT_EQ(substituted.band().cyclic(), cyclic);
-    // A row's tail reaches 7 to both sides, the entries of N 7 more.
+    // A tail reaches 7 to both sides, the entries of N 7 more; no two tails meet.
     EXPECT_LE(substituted.band().width(), 15);
   }
 }
