@@ -91,7 +91,8 @@ double DirectReference::Distance(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd v = FromMinimum(x);
   if (!unique_) return LargestRowProduct(v) / scaled_size_;
   const Eigen::VectorXd moved = problem_->elimination().ExpandDirection(v);
-  const int d = objective_.curve_view()->dimension();
+  const CurveFit* const fit = problem_->curve_fit();
+  const int d = fit == nullptr ? objective_.curve_view()->dimension() : fit->dimension();
   double largest = 0.0;
   for (Eigen::Index j = 0; j + d <= moved.size(); j += d) {
     const double distance = moved.segment(j, d).norm();

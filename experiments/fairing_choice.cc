@@ -281,7 +281,8 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   const auto data_view = CurveView::Make(*problem, others, nullptr);
   const auto fairing_view =
       CurveView::Make(*problem, {problem->terms()[fairing].family->rows()}, nullptr);
-  if (data_view == nullptr || fairing_view == nullptr) {
+  if (data_view == nullptr || fairing_view == nullptr ||
+      data_view->dimension() != problem->curve_fit()->dimension()) {
     *error = std::string("fairing=") + ToString(rule) +
              " needs another term, and constraints that are linear and treat coordinates alike";
     return false;

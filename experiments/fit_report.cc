@@ -28,6 +28,8 @@ bool AuditApplies(const Problem& problem) {
   AuditedFit ignored;
   if (DistanceWeight(problem) == 0.0 || !AddTermsBesideDistances(problem, &ignored)) return false;
   if (fit.spec().parameter_kind == ParameterKind::kFixed) return problem.elimination().trivial();
+  const VariableRange& control_points = problem.ranges().front();
+  if (!problem.elimination().LeavesAll(0, control_points.size)) return false;
   return fit.setting().keep_order || FreeView::Make(problem) != nullptr;
 }
 

@@ -1,6 +1,7 @@
 #include "problems/curve_view.h"
 
 #include "problems/fit_problem.h"
+#include "splines/interleaved_rows.h"
 
 namespace batten {
 
@@ -34,8 +35,17 @@ std::unique_ptr<CurveView> CurveView::Make(const Problem& problem,
   }
   Eigen::SparseMatrix<double, Eigen::RowMajor> z;
   Points offset;
-  if (!problem.elimination().ForPoints(0, shape.num_columns, shape.dimension, &z, &offset)) {
-    return nullptr;
+  const bool are_alike =
+      problem.elimination().ForPoints(0, shape.num_columns, shape.dimension, &z, &offset);
+  std::vector<InterleavedRows> by_coordinate;
+  if (!are_alike) {
+    // The coordinates are unknowns of one system, in a band that is as many times wider.
+    by_coordinate.reserve(sources.size());
+    for (const RowSource*& source : sources) {
+      by_coordinate.emplace_back(source);
+      source = &by_coordinate.back();
+    }
+    problem.elimination().ForPoints(0, problem.num_variables(), 1, &z, &offset);
   }
   auto rows = std::make_unique<BandedRows>(BandedRows(sources).Substitute(z, offset));
   std::unique_ptr<CurveView> view(new CurveView(rows->shape(), monitor));

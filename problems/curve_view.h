@@ -12,11 +12,11 @@
 namespace batten {
 
 /// A problem all of whose terms are compiled rows, as geometric methods see it:
-/// E(P) = ||A P - Q||^2 in n unknown points P of dimension d (x read row-major; after elimination
-/// of constraints, A and Q are those of the points that stay). Products are counted.
+/// E(P) = ||A P - Q||^2 in n unknown points P of dimension d (x read row-major; of the points that
+/// constraints leave, d = 1 where they bind coordinates unlike each other). Products are counted.
 class CurveView {
  public:
-  /// Null if some term has no rows, or constraints treat coordinates differently or are not linear.
+  /// Null if some term has no rows, or constraints are not linear.
   static std::unique_ptr<CurveView> Make(const Problem& problem, EvaluationMonitor* monitor);
   /// The same of other rows in the problem's control points, such as its terms' with weights that a
   /// loss gives; they must outlive the view. Null too if one of them is null.

@@ -1,29 +1,43 @@
 #include "problems/free_view.h"
 
-namespace batten {
-namespace {
+#include <algorithm>
 
-/// Which parameters the constraints hold; false if they do anything else.
-bool OnlyParametersAreHeld(const Problem& problem, const FreeSites& sites,
-                           std::vector<char>* held) {
-  held->clear();
+namespace batten {
+
+bool FreeView::ReadConstraints(const Problem& problem) {
   if (problem.has_bounds()) return false;
   if (problem.elimination().trivial()) return true;
-  const auto& z = problem.elimination().z();
-  if (sites.projected) return false;
-  held->assign(static_cast<std::size_t>(sites.weights.size()), 0);
+  const SparseRows& z = problem.elimination().z();
+  const std::vector<int>& free = problem.elimination().free();
+  const int begin = sites_->control_point_offset;
+  const int end = begin + num_control_points() * dimension();
+  // Columns of coordinates follow each other, as the variables do.
+  const auto first_column = std::lower_bound(free.begin(), free.end(), begin) - free.begin();
+  const auto num_columns =
+      std::lower_bound(free.begin(), free.end(), end) - free.begin() - first_column;
+  std::vector<Eigen::Triplet<double>> entries;
+  held_.assign(sites_->projected ? 0 : static_cast<std::size_t>(num_points()), 0);
   for (int row = 0; row < z.rows(); ++row) {
-    const auto entries = z.outerIndexPtr()[row + 1] - z.outerIndexPtr()[row];
-    const bool stays = entries == 1 && z.valuePtr()[z.outerIndexPtr()[row]] == 1.0;
-    if (stays) continue;
-    const int i = row - sites.parameter_offset;
-    if (entries != 0 || i < 0) return false;
-    (*held)[static_cast<std::size_t>(i)] = 1;
+    const bool is_coordinate = row >= begin && row < end;
+    int count = 0;
+    bool stays = false;
+    for (SparseRows::InnerIterator entry(z, row); entry; ++entry, ++count) {
+      const auto column = entry.col() - first_column;
+      if (is_coordinate && (column < 0 || column >= num_columns)) return false;
+      if (is_coordinate) {
+        entries.emplace_back(row - begin, static_cast<int>(column), entry.value());
+      }
+      stays = free[static_cast<std::size_t>(entry.col())] == row;
+    }
+    if (is_coordinate || stays) continue;
+    if (count != 0) return false;
+    held_[static_cast<std::size_t>(row - sites_->parameter_offset)] = 1;
   }
+  if (num_columns == end - begin) return true;
+  map_.resize(end - begin, num_columns);
+  map_.setFromTriplets(entries.begin(), entries.end());
   return true;
 }
-
-}  // namespace
 
 Eigen::VectorXd FreeView::WithParameters(const Eigen::VectorXd& x) const {
   if (!projected()) return x;
@@ -50,7 +64,7 @@ std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {
     }
   }
   if (view->sites_ == nullptr) return nullptr;
-  if (!OnlyParametersAreHeld(problem, *view->sites_, &view->held_)) return nullptr;
+  if (!view->ReadConstraints(problem)) return nullptr;
   if (!rows.empty()) {
     auto band = std::make_unique<NormalBand>(rows.front()->shape());
     for (const RowSource* source : rows) source->Stream(band.get());

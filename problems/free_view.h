@@ -11,9 +11,9 @@ namespace batten {
 
 /// A problem E(P, t) = sum_i w_i |C(t_i) - Q_i|^2 + ||A P - B||^2 with the parameters t as
 /// variables, as methods see it that know this structure: one free_parameter term, any number of
-/// terms that are compiled rows, and no constraints but parameters that are held. Or the same with
-/// t projected (one foot_point term): P alone is variable then, and methods keep t behind it in
-/// vectors of their own.
+/// terms that are compiled rows, and linear constraints that bind control points to each other or
+/// hold parameters. Or the same with t projected (one foot_point term): P alone is variable then,
+/// and methods keep t behind it in vectors of their own.
 class FreeView {
  public:
   /// Null for any other problem.
@@ -26,6 +26,13 @@ class FreeView {
   int dimension() const { return sites_->dimension; }
   /// Whether t_i is given by a constraint.
   bool is_held(int i) const { return !held_.empty() && held_[static_cast<std::size_t>(i)] != 0; }
+  /// Z of P = offset + Z y, n d x n' in coordinates, where constraints bind control points; the y
+  /// are coordinates that stay. Null where they do not.
+  const SparseRows* control_point_map() const { return map_.rows() == 0 ? nullptr : &map_; }
+  /// Coordinates of control points among the free variables: n d or n'.
+  int num_free_coordinates() const {
+    return map_.rows() == 0 ? num_control_points() * dimension() : static_cast<int>(map_.cols());
+  }
   /// Control points and parameters behind all variables x of the problem. Projected ones are as
   /// they may be: they are to be searched.
   Eigen::VectorXd WithParameters(const Eigen::VectorXd& x) const;
@@ -36,9 +43,12 @@ class FreeView {
 
  private:
   FreeView() = default;
+  /// False if constraints do anything else than bind control points and hold parameters.
+  bool ReadConstraints(const Problem& problem);
 
   const FreeSites* sites_ = nullptr;
   std::vector<char> held_;  // empty: none
+  SparseRows map_;          // no rows: the identity
   std::unique_ptr<const NormalBand> other_terms_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
+
 #include "problems/constraint_rows.h"
 
 namespace batten {
@@ -41,7 +43,26 @@ bool LinearElimination::Make(int num_variables, const std::vector<LinearConstrai
 
 Eigen::VectorXd LinearElimination::Expand(const Eigen::VectorXd& y) const {
   if (trivial()) return y;
-  return offset_ + z_ * y;
+  Eigen::VectorXd x(z_.rows());
+  for (std::size_t k = 0; k < free_.size(); ++k) x[free_[k]] = y[static_cast<Eigen::Index>(k)];
+  Determine(&x);
+  return x;
+}
+
+void LinearElimination::Determine(Eigen::VectorXd* x) const {
+  std::size_t next = 0;  // of the free variables
+  for (int row = 0; row < z_.rows(); ++row) {
+    if (next < free_.size() && free_[next] == row) {
+      ++next;
+      continue;
+    }
+    double value = offset_[row];
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(z_, row); entry;
+         ++entry) {
+      value += entry.value() * (*x)[free_[static_cast<std::size_t>(entry.col())]];
+    }
+    (*x)[row] = value;
+  }
 }
 
 Eigen::VectorXd LinearElimination::ExpandDirection(const Eigen::VectorXd& v) const {
@@ -59,6 +80,12 @@ Eigen::VectorXd LinearElimination::FreeVariables(const Eigen::VectorXd& x) const
   Eigen::VectorXd y(static_cast<Eigen::Index>(free_.size()));
   for (std::size_t k = 0; k < free_.size(); ++k) y[static_cast<Eigen::Index>(k)] = x[free_[k]];
   return y;
+}
+
+bool LinearElimination::LeavesAll(int begin, int end) const {
+  if (trivial()) return true;
+  const auto first = std::lower_bound(free_.begin(), free_.end(), begin);
+  return std::lower_bound(first, free_.end(), end) - first == end - begin;
 }
 
 namespace {

@@ -34,13 +34,17 @@ class LinearElimination {
   int num_free(int num_variables) const {
     return trivial() ? num_variables : static_cast<int>(z_.cols());
   }
-  Eigen::VectorXd Expand(const Eigen::VectorXd& y) const;           ///< offset + Z y.
+  Eigen::VectorXd Expand(const Eigen::VectorXd& y) const;  ///< offset + Z y.
+  /// Expand in place, with the same bits: variables of x that others determine get what these say.
+  void Determine(Eigen::VectorXd* x) const;
   Eigen::VectorXd ExpandDirection(const Eigen::VectorXd& v) const;  ///< Z v.
   Eigen::VectorXd Restrict(const Eigen::VectorXd& gradient) const;  ///< Z' g.
   /// The y whose free variables are those of x: meets the constraints whether x does or not.
   Eigen::VectorXd FreeVariables(const Eigen::VectorXd& x) const;
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& z() const { return z_; }
   const std::vector<int>& free() const { return free_; }  ///< Variable behind each y.
+  /// Whether all of the variables begin..end-1 stay.
+  bool LeavesAll(int begin, int end) const;
 
   /// If Z acts on the points x[begin + j * dimension + c] alike for all coordinates c, and on
   /// nothing else: Z for points (n x n') and the offset (n x dimension). False otherwise.

@@ -17,7 +17,7 @@ SolverInfo BaseInfo(const std::string& name, const std::string& summary,
   info.summary = summary;
   info.source = source;
   info.needs = {"free parameters"};
-  info.supports = {"held parameters", "weights", "affine terms"};
+  info.supports = {"linear constraints", "held parameters", "weights", "affine terms"};
   info.native_rule = NativeRule::kStep;
   return info;
 }
@@ -45,8 +45,7 @@ std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {
 }
 
 Eigen::Index FootIteration::num_mapped(const Eigen::VectorXd& /*x*/) const {
-  const FreeView& view = *objective()->free_view();
-  return static_cast<Eigen::Index>(view.num_control_points()) * view.dimension();
+  return objective()->free_view()->num_free_coordinates();
 }
 
 Status FootIteration::Complete(Eigen::VectorXd* x) {
@@ -149,14 +148,15 @@ SolverInfo GiSolver::ClassInfo() {
 
 bool GiSolver::MakeStep(const Eigen::VectorXd& all, Eigen::VectorXd* step) {
   if (!model()->Sum(all, FootModelKind::kPoint, 0.0)) return false;
-  const Eigen::VectorXd& gradient = model()->half_gradient();
+  const Eigen::VectorXd& gradient = model()->free_half_gradient();
   const std::vector<double> sums = model()->RowSums();
-  step->resize(gradient.size());
-  for (Eigen::Index k = 0; k < step->size(); ++k) {
+  Eigen::VectorXd free_step(gradient.size());
+  for (Eigen::Index k = 0; k < free_step.size(); ++k) {
     // Control points without data stay.
     const double sum = sums[static_cast<std::size_t>(k)];
-    (*step)[k] = sum > 0.0 ? -gradient[k] / sum : 0.0;
+    free_step[k] = sum > 0.0 ? -gradient[k] / sum : 0.0;
   }
+  model()->Expand(free_step, step);
   return true;
 }
 

@@ -39,7 +39,13 @@ FootModel::FootModel(const FreeView& view, int threads)
       damped_(BlockBandShape(view)),
       diagonal_(static_cast<std::size_t>(basis_.num_control_points())),
       added_(diagonal_.size()),
-      half_gradient_(band_.size()) {
+      half_gradient_(band_.size()),
+      map_(view.control_point_map()) {
+  if (map_ != nullptr) {
+    free_band_ = SubstitutedBand(BlockBandShape(view), dimension_, map_);
+    free_half_gradient_.resize(map_->cols());
+    free_step_.resize(map_->cols());
+  }
   const auto m = static_cast<std::size_t>(view.num_points());
   const auto spans = static_cast<std::size_t>(basis_.num_domain_spans());
   const auto k = static_cast<std::size_t>(order_);
@@ -186,6 +192,7 @@ bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping
           other->band()[static_cast<std::size_t>(j) * other->width()];
     }
   }
+  if (map_ != nullptr) free_half_gradient_.noalias() = map_->transpose() * half_gradient_;
   return std::isfinite(energy_) && half_gradient_.allFinite();
 }
 
@@ -226,7 +233,9 @@ bool FootModel::Factor(double damping) {
       damped_.band()[static_cast<std::size_t>(j * dimension_ + e) * damped_.width()] += added;
     }
   }
-  return cholesky_.Factor(damped_);
+  if (map_ == nullptr) return cholesky_.Factor(damped_);
+  free_band_.Sum(damped_);
+  return free_step_.size() == 0 || cholesky_.Factor(free_band_.band());
 }
 
 bool FootModel::FactorSingular(double damping) {
@@ -240,9 +249,29 @@ bool FootModel::FactorSingular(double damping) {
   return false;
 }
 
-void FootModel::Solve(Eigen::VectorXd* step) const {
-  *step = -half_gradient_;
-  cholesky_.Solve(step->data(), 1);
+void FootModel::Solve(Eigen::VectorXd* step) {
+  if (map_ == nullptr) {
+    *step = -half_gradient_;
+    cholesky_.Solve(step->data(), 1);
+    return;
+  }
+  free_step_ = -free_half_gradient_;
+  if (free_step_.size() > 0) cholesky_.Solve(free_step_.data(), 1);
+  Expand(free_step_, step);
+}
+
+void FootModel::Expand(const Eigen::VectorXd& y, Eigen::VectorXd* step) const {
+  if (map_ == nullptr) {
+    *step = y;
+  } else {
+    step->noalias() = *map_ * y;
+  }
+}
+
+std::vector<double> FootModel::RowSums() {
+  if (map_ == nullptr) return band_.AbsoluteRowSums();
+  free_band_.Sum(band_);
+  return free_band_.band().AbsoluteRowSums();
 }
 
 void FootModel::ImproveFeet(int steps, Eigen::VectorXd* x) {

@@ -6,6 +6,7 @@
 #include "problems/free_view.h"
 #include "splines/banded_cholesky.h"
 #include "splines/normal_band.h"
+#include "splines/substituted_band.h"
 
 namespace batten {
 
@@ -22,8 +23,9 @@ enum class FootModelKind {
 
 /// The reduced model of a free problem in its band (blocks of d x d, bandwidth (p + 1) d), the
 /// border of closed curves included: one pass over the points, sums of each span in their own
-/// place, so that the bits do not depend on the number of threads. Nothing is allocated once sizes
-/// are known.
+/// place, so that the bits do not depend on the number of threads. Where constraints bind control
+/// points, P = offset + Z y, steps are those of y, from the band of Z'(half Hessian) Z. Nothing is
+/// allocated once sizes are known.
 class FootModel {
  public:
   FootModel(const FreeView& view, int threads);
@@ -42,16 +44,22 @@ class FootModel {
   /// times, until it is.
   bool FactorSingular(double damping);
   /// -(half Hessian)^-1 (half gradient), n d numbers; after Factor.
-  void Solve(Eigen::VectorXd* step) const;
+  void Solve(Eigen::VectorXd* step);
   /// Half gradient in the control points, t eliminated.
   const Eigen::VectorXd& half_gradient() const { return half_gradient_; }
+  /// The same in the coordinates that constraints leave: Z'(half gradient).
+  const Eigen::VectorXd& free_half_gradient() const {
+    return map_ == nullptr ? half_gradient_ : free_half_gradient_;
+  }
+  /// *step = Z y.
+  void Expand(const Eigen::VectorXd& y, Eigen::VectorXd* step) const;
   /// In the control points, t eliminated, without Factor's damping.
   const NormalBand& half_hessian() const { return band_; }
   /// Moves each parameter among all variables `x` nearer to the foot of its point, by at most
   /// `steps` Newton steps within its span; never away from it. Leaves no sums behind.
   void ImproveFeet(int steps, Eigen::VectorXd* x);
-  /// Row sums of |half Hessian|, n d of them.
-  std::vector<double> RowSums() const { return band_.AbsoluteRowSums(); }
+  /// Row sums of |half Hessian| in the coordinates that constraints leave.
+  std::vector<double> RowSums();
   /// *next = the control points moved by `step` and each parameter by what goes with it, held ones
   /// and those pressed against an end of the domain excepted. Returns what the model says that E
   /// falls by. After Sum of the same x.
@@ -112,6 +120,10 @@ class FootModel {
   std::vector<double> diagonal_;  // n: of the half Hessian for a = 0
   std::vector<double> added_;     // n: to the half Hessian by Factor
   Eigen::VectorXd half_gradient_;
+  const SparseRows* map_;      // Z; null: the identity
+  SubstitutedBand free_band_;  // of the half Hessian in y
+  Eigen::VectorXd free_half_gradient_;
+  Eigen::VectorXd free_step_;
   BandedCholesky cholesky_;
 };
 

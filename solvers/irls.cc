@@ -54,9 +54,7 @@ std::string IrlsSolver::WhyUnsupported(const Objective& objective) const {
     sources.push_back(term.family->rows_without_loss());
   }
   if (!objective.options().compile || CurveView::Make(problem, sources, nullptr) == nullptr) {
-    return name +
-           " needs terms that are compiled rows without their loss, and constraints that treat "
-           "coordinates alike; use lbfgs";
+    return name + " needs terms that are compiled rows without their loss; use lbfgs";
   }
   return "";
 }

@@ -29,9 +29,8 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   const std::string why_no_order = WhyNoOrder(objective.problem(), name);
   if (!why_no_order.empty()) return why_no_order;
   return name +
-         " takes one free_parameter or foot_point term without loss, terms that are affine, and no "
-         "constraints "
-         "but parameters that are held; use lbfgs";
+         " takes one free_parameter or foot_point term without loss, terms that are affine, and "
+         "constraints that are linear in the control points or hold parameters; use lbfgs";
 }
 
 std::string WhyNoFreeParameters(const Objective& objective, const std::string& name) {
@@ -106,7 +105,10 @@ Status JointDescent::Propose() {
   decrease_ = here_->Move(all_, step_, &next_);
   if (!next_.allFinite()) return Status::kNonFinite;
   if (objective()->free_view()->projected()) return Project(&next_);
-  return Complete(&next_) ? Status::kOk : Status::kNonFinite;
+  if (!Complete(&next_)) return Status::kNonFinite;
+  // The bits of a run that is resumed here: a sum of steps leaves the constraints by rounding.
+  objective()->problem().elimination().Determine(&next_);
+  return Status::kOk;
 }
 
 std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
@@ -132,7 +134,8 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     // Where differences of E are rounding, the gradient tells whether a step was good.
     const bool is_noise = std::abs(fall) <= noise && decrease_ <= noise;
     const bool is_better =
-        is_noise ? there_->half_gradient().norm() < here_->half_gradient().norm() : fall > 0.0;
+        is_noise ? there_->free_half_gradient().norm() < here_->free_half_gradient().norm()
+                 : fall > 0.0;
     if (finite && is_better) {
       if (!is_noise) {
         const double change = std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * fall / decrease_ - 1.0, 3));

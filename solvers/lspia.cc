@@ -1,7 +1,11 @@
 #include "solvers/lspia.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "solvers/normal_spectrum.h"
 
@@ -22,15 +26,56 @@ SolverInfo LspiaSolver::ClassInfo() {
                        "sum; optimal: 2 / (l1 + ln); cauchy: the best step of each iteration; "
                        "barzilai_borwein: the best one of the iteration before"),
       OptionInfo::Real("relaxation", 1.0, 1e-6, 1.0, "factor of the step"),
+      OptionInfo::Real("fairing_factor", 1.0, 0.0, 1e6,
+                       "what the terms fairing count times as much at the control points "
+                       "fairing_first to fairing_last (fairing-PIA)"),
+      OptionInfo::Integer("fairing_first", 0, 0, 1'000'000'000, "first of them, counted from 0"),
+      OptionInfo::Integer("fairing_last", 1'000'000'000, 0, 1'000'000'000,
+                          "last of them, or of all"),
   };
   return info;
 }
 
 LspiaSolver::LspiaSolver(const OptionValues& options)
-    : step_rule_(options.Word("step")), relaxation_(options.Real("relaxation")) {}
+    : step_rule_(options.Word("step")),
+      relaxation_(options.Real("relaxation")),
+      fairing_factor_(options.Real("fairing_factor")),
+      fairing_first_(options.Integer("fairing_first")),
+      fairing_last_(options.Integer("fairing_last")) {}
+
+LspiaSolver::LspiaSolver(std::vector<double> fairing_factors)
+    : step_rule_("diagonal"), relaxation_(1.0), fairing_factors_(std::move(fairing_factors)) {}
+
+SolverInfo LspiaSolver::Info() const {
+  SolverInfo info = ClassInfo();
+  if (weighs_fairing()) {
+    info.limit =
+        "(A'(Q - A P))_i = (f_i - 1) (F P)_i for every control point i, F of the terms fairing";
+  }
+  return info;
+}
 
 std::string LspiaSolver::WhyUnsupported(const Objective& objective) const {
-  return WhyNoUnboundedCurveView(objective, "lspia");
+  std::string why = WhyNoUnboundedCurveView(objective, "lspia");
+  if (!why.empty() || !weighs_fairing()) return why;
+  if (step_rule_ != "diagonal") {
+    return "lspia weighs fairing by control point in steps that each has of its own; use "
+           "step=diagonal";
+  }
+  return FairingWeights::WhyNot(objective, "lspia");
+}
+
+void LspiaSolver::WeighFairing() {
+  const NormalBand& band = objective()->curve_view()->normal_band();
+  std::vector<double> factors = fairing_factors_;
+  if (factors.empty()) {
+    factors.assign(static_cast<std::size_t>(band.size()), 1.0);
+    for (int j = fairing_first_; j <= std::min(fairing_last_, band.size() - 1); ++j) {
+      factors[static_cast<std::size_t>(j)] = fairing_factor_;
+    }
+  }
+  CHECK_EQ(factors.size(), static_cast<std::size_t>(band.size()));
+  weighted_.emplace(*objective(), band, std::move(factors));
 }
 
 std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
@@ -38,7 +83,8 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
   const int d = view.dimension();
   // Row sums of |N| are the column sums of A where A's rows are no less than 0 and sum to 1, and
   // bound the spectrum of N, or of the diagonally scaled N by 1, where they are not (Gershgorin).
-  const std::vector<double> sums = view.normal_band().AbsoluteRowSums();
+  const std::vector<double> sums =
+      weighted_.has_value() ? weighted_->RowSums() : view.normal_band().AbsoluteRowSums();
   double largest = 0.0;
   for (const double sum : sums) largest = std::max(largest, sum);
   step_.setZero(x.size());
@@ -79,6 +125,9 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
 std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
   last_move_.resize(0);
   alternations_ = 0;
+  first_move_ = -1.0;
+  weighted_.reset();
+  if (weighs_fairing()) WeighFairing();
   // Cauchy's steps change from one iteration to the next, and the longest move can come late.
   guard_.Reset(step_rule_ == "cauchy" ? 3 * StallGuard::kPatience : StallGuard::kPatience);
   return ChooseStep(*x);
@@ -87,6 +136,10 @@ std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
 Status LspiaSolver::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   Status status = objective()->curve_view()->NormalResidual(x, &residual_);
   if (status != Status::kOk) return status;
+  if (weighted_.has_value()) {
+    if (!objective()->curve_view()->AllowProduct(x)) return Status::kStop;
+    weighted_->AddTo(x, &residual_);
+  }
   if (step_.size() > 0) {
     *g_of_x = x + step_.cwiseProduct(residual_);
     return Status::kOk;
@@ -107,6 +160,17 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
   constexpr int kPatience = 20;
   move_ = g_of_x - x;
   const double length = move_.norm();
+  if (weighted_.has_value()) {
+    // |g| does not vanish at its limit: the race's rule, put to its own moves.
+    constexpr double kSmall = 1e-10;
+    const double rounding = std::numeric_limits<double>::epsilon() * x.norm();
+    if (first_move_ < 0.0) first_move_ = length;
+    if (length <= kSmall * first_move_ || length <= rounding) {
+      return Outcome{StopReason::kNativeStop,
+                     "it has reached its own limit, which is not the minimum of E: fairing is "
+                     "weighed by control point"};
+    }
+  }
   const bool as_long = last_move_.size() == move_.size() && length >= kSameLength * last_length_;
   // Hardly ever: moves shrink.
   const double product = length * last_length_;
@@ -125,22 +189,29 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
 std::vector<double> LspiaSolver::State() const {
   std::vector<double> state(last_move_.data(), last_move_.data() + last_move_.size());
   state.push_back(alternations_);
+  state.push_back(first_move_);
   guard_.AppendTo(&state);
   return state;
 }
 
 void LspiaSolver::Restore(const std::vector<double>& state) {
-  const auto size = static_cast<Eigen::Index>(state.size()) - 3;
+  const auto size = static_cast<Eigen::Index>(state.size()) - 4;
   last_move_ = Eigen::Map<const Eigen::VectorXd>(state.data(), size);
   last_length_ = last_move_.norm();
   alternations_ = static_cast<int>(state[static_cast<std::size_t>(size)]);
-  guard_.Restore(state.data() + size + 1);
+  first_move_ = state[static_cast<std::size_t>(size) + 1];
+  guard_.Restore(state.data() + size + 2);
 }
 
 BarzilaiBorweinLspiaSolver::BarzilaiBorweinLspiaSolver(const OptionValues& options)
-    : relaxation_(options.Real("relaxation")) {}
+    : relaxation_(options.Real("relaxation")),
+      weighs_fairing_(options.Real("fairing_factor") != 1.0) {}
 
 std::string BarzilaiBorweinLspiaSolver::WhyUnsupported(const Objective& objective) const {
+  if (weighs_fairing_) {
+    return "lspia weighs fairing by control point in steps that each has of its own; use "
+           "step=diagonal";
+  }
   return WhyNoUnboundedCurveView(objective, "lspia");
 }
 

@@ -1,6 +1,11 @@
 #ifndef BATTEN_SOLVERS_LSPIA_H_
 #define BATTEN_SOLVERS_LSPIA_H_
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solvers/fairing_weights.h"
 #include "solvers/solver_registry.h"
 #include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
@@ -8,12 +13,16 @@
 namespace batten {
 
 /// Least-squares progressive-iterative approximation: P += mu A'(Q - A P), mu a number or a
-/// diagonal that depends on P alone. docs/solvers/lspia.md.
+/// diagonal that depends on P alone. With fairing terms that is fairing-PIA, whose weights per
+/// control point are FairingWeights. docs/solvers/lspia.md.
 class LspiaSolver final : public FixedPoint {
  public:
   static SolverInfo ClassInfo();
   explicit LspiaSolver(const OptionValues& options);
-  SolverInfo Info() const override { return ClassInfo(); }
+  /// lspia/step=diagonal with any factor of the fairing terms at each control point, 0 or more; as
+  /// many as there are.
+  explicit LspiaSolver(std::vector<double> fairing_factors);
+  SolverInfo Info() const override;
   std::string WhyUnsupported(const Objective& objective) const override;
   Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) override;
   std::vector<double> State() const override;
@@ -23,9 +32,17 @@ class LspiaSolver final : public FixedPoint {
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> Inspect(const Eigen::VectorXd& x, const Eigen::VectorXd& g_of_x) override;
   std::optional<Outcome> ChooseStep(const Eigen::VectorXd& x);
+  bool weighs_fairing() const { return fairing_factor_ != 1.0 || !fairing_factors_.empty(); }
+  void WeighFairing();
 
   std::string step_rule_;
   double relaxation_;
+  double fairing_factor_ = 1.0;  // at control points fairing_first_..fairing_last_
+  int fairing_first_ = 0;
+  int fairing_last_ = 0;
+  std::vector<double> fairing_factors_;     // instead of these
+  std::optional<FairingWeights> weighted_;  // none: all factors are 1
+  double first_move_ = -1.0;
   Eigen::VectorXd step_;      // mu per variable; empty for cauchy
   Eigen::VectorXd residual_;  // A'(Q - A P) at the last point mapped
   Eigen::VectorXd product_;
@@ -50,6 +67,7 @@ class BarzilaiBorweinLspiaSolver final : public Stepper {
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
 
   double relaxation_;
+  bool weighs_fairing_;
   double first_step_ = 0.0;   // 1 / largest row sum of |N|
   Eigen::VectorXd residual_;  // A'(Q - A P) at the last point
   Eigen::VectorXd previous_x_;

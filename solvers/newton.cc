@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "problems/fit_problem.h"
+#include "solvers/exact_newton.h"
 #include "splines/nearest_solution.h"
 
 namespace batten {
@@ -12,9 +13,9 @@ SolverInfo NewtonSolver::ClassInfo() {
   info.name = "newton";
   info.summary = "Newton's method with the banded Hessian, free parameters eliminated";
   info.source = "Nocedal & Wright, Numerical Optimization, sec. 3.3; de Boor, ch. XIV";
-  info.needs = {"compiled rows, or free parameters"};
+  info.needs = {"a curve"};
   info.supports = {"linear constraints", "weights", "any rank (nearest to the start)",
-                   "free parameters"};
+                   "free parameters", "any term and loss of fixed parameters"};
   info.native_rule = NativeRule::kGradient;
   return info;
 }
@@ -26,16 +27,19 @@ std::string NewtonSolver::WhyUnsupported(const Objective& objective) const {
   if (fit != nullptr && (fit->has_free_parameters() || fit->is_projected())) {
     return WhyNoFreeView(objective, "newton");
   }
-  return WhyNoUnboundedCurveView(objective, "newton");
+  return objective.is_quadratic() ? WhyNoBounds(objective, "newton")
+                                  : ExactNewton::WhyNot(objective, "newton");
 }
 
 std::optional<Outcome> NewtonSolver::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
-  free_.reset();
+  other_.reset();
   if (objective()->free_view() != nullptr) {
-    free_ = std::make_unique<FreeNewton>();
-    return free_->Start(objective(), context(), x);
+    other_ = std::make_unique<FreeNewton>();
+  } else if (!objective()->is_quadratic()) {
+    other_ = std::make_unique<ExactNewton>();
   }
+  if (other_ != nullptr) return other_->Start(objective(), context(), x);
   // Beyond this condition a step has no sure digit, and steps need not come nearer.
   constexpr double kLargestCondition = 0.1 / std::numeric_limits<double>::epsilon();
   singular_ = !factor_.Factor(objective()->curve_view()->normal_band()) ||
@@ -59,7 +63,7 @@ std::optional<Outcome> NewtonSolver::SolveSingular(Eigen::VectorXd* x) {
 }
 
 std::optional<Outcome> NewtonSolver::DoStep(Eigen::VectorXd* x) {
-  if (free_ != nullptr) return free_->Step(x);
+  if (other_ != nullptr) return other_->Step(x);
   Status status = objective()->curve_view()->NormalResidual(*x, &step_);
   if (status != Status::kOk) return Ended(status);
   if (singular_) return SolveSingular(x);
@@ -71,14 +75,14 @@ std::optional<Outcome> NewtonSolver::DoStep(Eigen::VectorXd* x) {
 }
 
 std::vector<double> NewtonSolver::State() const {
-  if (free_ != nullptr) return free_->State();
+  if (other_ != nullptr) return other_->State();
   std::vector<double> state;
   guard_.AppendTo(&state);
   return state;
 }
 
 void NewtonSolver::Restore(const std::vector<double>& state) {
-  if (free_ != nullptr) return free_->Restore(state);
+  if (other_ != nullptr) return other_->Restore(state);
   guard_.Restore(state.data());
 }
 

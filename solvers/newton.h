@@ -15,8 +15,9 @@ class FreeNewton final : public JointDescent {
   SolverInfo Info() const override;
 };
 
-/// Newton's method. With fixed parameters P += N^-1 A'(Q - A P): the Hessian 2 N is banded, its
-/// factor too. With free ones FreeNewton. docs/solvers/newton.md.
+/// Newton's method. Where E is compiled rows P += N^-1 A'(Q - A P): the Hessian 2 N is banded, its
+/// factor too. With other terms ExactNewton, with free parameters FreeNewton.
+/// docs/solvers/newton.md.
 class NewtonSolver final : public Stepper {
  public:
   static SolverInfo ClassInfo();
@@ -35,7 +36,7 @@ class NewtonSolver final : public Stepper {
   bool singular_ = false;
   Eigen::VectorXd step_;
   StallGuard guard_;
-  std::unique_ptr<FreeNewton> free_;  // null: parameters are fixed
+  std::unique_ptr<Stepper> other_;  // null: E is compiled rows
 };
 
 }  // namespace batten

@@ -89,7 +89,7 @@ std::string WhyNoCurveView(const Objective& objective, const std::string& solver
              term.name + " is not; use lbfgs";
     }
   }
-  return solver_name + " needs constraints that treat all coordinates alike; use lbfgs";
+  return solver_name + " needs terms in control points alone; use lbfgs";
 }
 
 std::string WhyNoBounds(const Objective& objective, const std::string& solver_name) {

@@ -9,7 +9,7 @@ SolverInfo VarproSolver::ClassInfo() {
   info.source =
       "Golub & Pereyra, SINUM 10, 1973; Kaufman, BIT 15, 1975; Ruhe & Wedin, SIAM Rev. 22, 1980";
   info.needs = {"free parameters"};
-  info.supports = {"held parameters", "weights", "affine terms"};
+  info.supports = {"linear constraints", "held parameters", "weights", "affine terms"};
   info.native_rule = NativeRule::kGradient;
   return info;
 }

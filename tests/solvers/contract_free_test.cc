@@ -121,13 +121,100 @@ TEST_P(EverySolver, RunsOrRefusesLossesOnFreeParameters) {
   }
 }
 
-TEST_P(EverySolver, RunsOrRefusesConstraintsOnTheControlPointsOfFreeFits) {
-  const auto problem = FreeProblems()[0].make();
-  SetConstraints({HoldCurve(*problem, 0.3, 0, 0.1), HoldCurve(*problem, 0.3, 1, -0.2)},
-                 problem.get());
-  if (!keeps_its_spans()) ExpectRunsOrRefuses(*problem, free_name());
-  if (needs_free_parameters()) {
-    EXPECT_THAT(WhyUnsupported(*problem, free_name()), ::testing::HasSubstr("no constraints but"));
+/// The curve passes through a point where it begins, one coordinate is given further on, and two
+/// control points are tied to each other.
+std::vector<LinearConstraint> OnControlPoints(const Problem& problem) {
+  const CurveFit& fit = *problem.curve_fit();
+  const BsplineBasis& basis = fit.basis();
+  std::vector<LinearConstraint> constraints;
+  for (int c = 0; c < fit.dimension(); ++c) {
+    constraints.push_back(HoldCurve(problem, basis.domain_begin(), c, c == 0 ? 0.3 : 0.02));
+  }
+  constraints.push_back(
+      HoldCurve(problem, basis.domain_begin() + 0.6 * basis.domain_length(), 1, -0.1));
+  const int last = basis.num_control_points() - 1;
+  const int d = fit.dimension();
+  constraints.push_back({"tied", {{last * d, 1.0}, {(last - 1) * d, -1.0}}, 0.05});
+  return constraints;
+}
+
+/// Parameters that are held stay so.
+void AddConstraints(std::vector<LinearConstraint> constraints, Problem* problem) {
+  const CurveFit& fit = *problem->curve_fit();
+  if (fit.setting().ends_held) {
+    for (const int i : {0, static_cast<int>(fit.parameters().size()) - 1}) {
+      const int variable = fit.setting().parameter_offset + i;
+      constraints.push_back({"end held", {{variable, 1.0}}, problem->start()[variable]});
+    }
+  }
+  SetConstraints(constraints, problem);
+}
+
+double LargestMiss(const std::vector<LinearConstraint>& constraints, const Eigen::VectorXd& all) {
+  double largest = 0.0;
+  for (const LinearConstraint& constraint : constraints) {
+    double miss = -constraint.value;
+    for (const auto& [variable, coefficient] : constraint.coefficients) {
+      miss += coefficient * all[variable];
+    }
+    largest = std::max(largest, std::abs(miss));
+  }
+  return largest;
+}
+
+TEST_P(EverySolver, HoldsConstraintsOnTheControlPointsOfFreeFits) {
+  // Ceres' trust region has tests of its own for what is left once a point leaves its spans.
+  if (keeps_its_spans()) return;
+  for (const ContractProblem& row : MovingProblems()) {
+    const auto problem = row.make();
+    const bool takes_it_without = WhyUnsupported(*problem, free_name()).empty();
+    const std::vector<LinearConstraint> constraints = OnControlPoints(*problem);
+    AddConstraints(constraints, problem.get());
+    const std::string why = WhyUnsupported(*problem, free_name());
+    if (!takes_it_without) continue;
+    SCOPED_TRACE(row.name);
+    ASSERT_EQ(why, "");
+    const SolverTrial trial(*problem, free_name(), {3000});
+    // Data are of size 1 inside.
+    for (const Eigen::VectorXd& iterate : trial.context.iterates()) {
+      ASSERT_LE(LargestMiss(constraints, problem->elimination().Expand(iterate)), 1e-12);
+    }
+    EXPECT_NE(trial.outcome.reason, StopReason::kNumericalFailure) << trial.outcome.message;
+    const Objective objective(problem.get(), nullptr);
+    SolverTrial copy(*problem, free_name(), {0});
+    EXPECT_LT(copy.context.Energy(trial.x), copy.context.Energy(objective.start()));
+    EXPECT_TRUE(IsSuccess(trial.outcome.reason) || !ReachesTheMinimum(GetParam()))
+        << ToString(trial.outcome.reason) << ": " << trial.outcome.message;
+    if (IsSuccess(trial.outcome.reason)) {
+      // Along the constraints, by the terms' own derivatives.
+      EXPECT_LE(copy.context.GradientNorm(trial.x),
+                std::max(1e-10 * trial.context.gradient_norms().front(),
+                         objective.GradientRoundingFloor(trial.x)));
+    }
+  }
+}
+
+TEST_P(EverySolver, FindsTheMinimumOfLbfgsWhereConstraintsBindFreeFits) {
+  if (!ReachesTheMinimum(GetParam())) return;
+  for (const ContractProblem& row : MovingProblems()) {
+    const auto problem = row.make();
+    AddConstraints(OnControlPoints(*problem), problem.get());
+    if (!WhyUnsupported(*problem, free_name()).empty()) continue;
+    SCOPED_TRACE(row.name);
+    SolverTrial trial(*problem, free_name(), {3000});
+    ASSERT_TRUE(IsSuccess(trial.outcome.reason)) << ToString(trial.outcome.reason);
+    // From its end, moved along the constraints by up to 1e-3: the same basin.
+    Objective objective(problem.get(), nullptr);
+    Eigen::VectorXd x = trial.x;
+    std::mt19937 random(20240904);
+    for (double& coordinate : x) coordinate += RandomBetween(-1e-3, 1e-3, &random);
+    problem->SetStart(objective.Expand(x));
+    SolverTrial lbfgs(*problem, "lbfgs", {20000});
+    const double energy = lbfgs.context.Energy(lbfgs.x);
+    const double noise = Objective::EnergyRoundingFloor(energy, objective.ResidualSize(lbfgs.x));
+    // E is flat at a minimum: of a gradient small by 1e-10 the square counts.
+    EXPECT_NEAR(trial.context.Energy(trial.x), energy, 1e-9 * energy + 64 * noise)
+        << ToString(lbfgs.outcome.reason);
   }
 }
 

@@ -49,6 +49,24 @@ TEST_P(EverySolver, RunsOrRefusesConstraintsOnOneCoordinate) {
       {{"y of P_2 is twice that of P_3", {{5, 1.0}, {7, -2.0}}, 0.1}}, &error))
       << error;
   ExpectRunsOrRefuses(*problem, name());
+  const std::vector<std::string> supports = SolverRegistry::Global().Find(GetParam())->supports;
+  const bool claims =
+      std::find(supports.begin(), supports.end(), "linear constraints") != supports.end();
+  if (!claims || needs_free_parameters()) return;
+  ASSERT_EQ(WhyUnsupported(*problem, name()), "");
+  const SolverTrial trial(*problem, name());
+  EXPECT_NEAR(trial.all[5] - 2.0 * trial.all[7], 0.1, 16 * kEps);
+  // The gradient along the constraint, from the dense matrix: x_7, whose coefficient is the larger
+  // one, is given up and goes half the way of x_5.
+  const DenseFit dense(*problem);
+  const Points g = 2.0 * dense.a.transpose() * (dense.a * dense.PointsOf(trial.all) - dense.q);
+  double squared = 0.0;
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    if (i != 7) squared += std::pow(g.data()[i] + (i == 5 ? 0.5 * g.data()[7] : 0.0), 2);
+  }
+  const double rounding = 256 * kEps * dense.a.norm() * dense.condition();
+  EXPECT_LE(std::sqrt(squared), 1.01 * trial.context.gradient_norms().back() + rounding)
+      << ToString(trial.outcome.reason) << " " << trial.outcome.message;
 }
 
 TEST_P(EverySolver, HoldsNonlinearConstraintsOrRefusesThem) {

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "solvers/foot_projection.h"
 #include "tests/solvers/contract_cases.h"
@@ -16,6 +17,7 @@ namespace {
 /// Of sums over some 50 points of products, each off by a few roundings; where t is eliminated the
 /// division by |C'|^2 + r . C'' can cost a digit or two. The bound that issue 4 asks for.
 constexpr double kRelative = 1e-10;
+constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 struct ModelCase {
   std::string name;
@@ -292,6 +294,61 @@ TEST(FootModel, HasTheSameBitsWithAnyNumberOfThreads) {
     model.ImproveFeet(2, &its_improved);
     EXPECT_TRUE(SameBits(its_improved, improved));
   }
+}
+
+/// E's model with C P = c taken in by multipliers: [H C'; C 0] [s; l] = [-g; 0].
+TEST_P(FootModels, StepsWithinLinearConstraintsAsTheKktConditionsSay) {
+  const BsplineBasis& basis = problem_->curve_fit()->basis();
+  const double middle = basis.domain_begin() + 0.4 * basis.domain_length();
+  std::vector<LinearConstraint> held = {HoldCurve(*problem_, middle, 0, 0.1),
+                                        HoldCurve(*problem_, middle, 1, -0.2),
+                                        HoldCurve(*problem_, middle + 0.01, 1, -0.2)};
+  Eigen::VectorXd all = objective_.Expand(OffTheFeet(0.05));
+  const auto n = static_cast<Eigen::Index>(problem_->ranges().front().size);
+  Eigen::MatrixXd c = Eigen::MatrixXd::Zero(3, n);
+  for (int k = 0; k < 3; ++k) {
+    for (const auto& [index, coefficient] : held[static_cast<std::size_t>(k)].coefficients) {
+      c(k, index) += coefficient;
+    }
+  }
+  FootModel plain(*objective_.free_view(), 1);
+  ASSERT_TRUE(plain.Sum(all, FootModelKind::kTangent, 0.1));
+  Eigen::MatrixXd hessian = plain.half_hessian().ToDense();
+  // Where the basis wraps onto itself, the diagonal that damping refers to is not H's.
+  const double damping = basis.num_control_points() < basis.order() ? 0.0 : 0.3;
+  FootModel point(*objective_.free_view(), 1);
+  ASSERT_TRUE(point.Sum(all, FootModelKind::kPoint, 0.0));
+  const Eigen::VectorXd diagonal = point.half_hessian().ToDense().diagonal();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    hessian(k, k) += damping * std::max(diagonal[k], 1e-3 * diagonal.mean());
+  }
+  Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n + 3, n + 3);
+  kkt.topLeftCorner(n, n) = hessian;
+  kkt.topRightCorner(n, 3) = c.transpose();
+  kkt.bottomLeftCorner(3, n) = c;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 3);
+  right.head(n) = -plain.half_gradient();
+  const Eigen::VectorXd expected = kkt.fullPivLu().solve(right).head(n);
+
+  // Ends that are held stay so: their constraints are replaced by all of them.
+  const FreeSites& sites = objective_.free_view()->sites();
+  for (int i = 0; i < objective_.free_view()->num_points(); ++i) {
+    if (!objective_.free_view()->is_held(i)) continue;
+    const int variable = sites.parameter_offset + i;
+    held.push_back({"held", {{variable, 1.0}}, all[variable]});
+  }
+  SetConstraints(held, problem_.get());
+  const Objective constrained(problem_.get(), nullptr);
+  ASSERT_NE(constrained.free_view(), nullptr);
+  FootModel model(*constrained.free_view(), 1);
+  ASSERT_TRUE(model.Sum(all, FootModelKind::kTangent, 0.1));
+  ASSERT_TRUE(model.Factor(damping));
+  Eigen::VectorXd step;
+  model.Solve(&step);
+  ASSERT_EQ(step.size(), n);
+  EXPECT_LT((step - expected).norm(), kEps * static_cast<double>(n) * hessian.norm() *
+                                          hessian.inverse().norm() * expected.norm());
+  EXPECT_LT((c * step).norm(), 1e-12);
 }
 
 TEST(FootModel, SaysWhereASumIsNotFinite) {

@@ -75,13 +75,56 @@ TEST(CurveConstraints, HoldPointsAndDerivativesWhateverTheSolver) {
   }
 }
 
-TEST(CurveConstraints, HoldSingleCoordinatesInSolversOfAnyConstraints) {
-  const auto problem =
-      MakeFit(OpenData(), WithConstraints(MakeSpec(3, false, 14), "point/t=0.5/y=2.5"));
-  EXPECT_THAT(WhyUnsupported(*problem, "banded_qr"), HasSubstr("banded_qr"));
-  for (const char* solver : {"lbfgs", "ceres_lm"}) {
-    const Eigen::VectorXd x = Solve(*problem, solver);
-    EXPECT_NEAR(CurveAt(*problem, x, 0.5, 0)[1], 2.5, kHeld * problem->curve_fit()->size());
+TEST(CurveConstraints, HoldSingleCoordinatesAndLeaveTheOthersAlone) {
+  for (const bool closed : {false, true}) {
+    const auto problem =
+        MakeFit(OpenData(), WithConstraints(MakeSpec(3, closed, 14), "point/t=0.5/y=2.5"));
+    const auto unbound = MakeFit(OpenData(), MakeSpec(3, closed, 14));
+    const Eigen::VectorXd without = Solve(*unbound, "banded_qr");
+    for (const char* solver : {"banded_qr", "banded_cholesky", "dense_qr", "lspia", "cg", "newton",
+                               "irls:banded_qr", "lbfgs", "ceres_lm"}) {
+      SCOPED_TRACE(solver);
+      const Eigen::VectorXd x = Solve(*problem, solver);
+      EXPECT_NEAR(CurveAt(*problem, x, 0.5, 0)[1], 2.5, kHeld * problem->curve_fit()->size());
+      EXPECT_GT(std::abs(CurveAt(*unbound, without, 0.5, 0)[1] - 2.5), 0.1);
+      // The energy is a sum over the coordinates: x is fitted as if y were not there.
+      for (const double t : {0.0, 0.31, 0.5, 0.97}) {
+        EXPECT_NEAR(CurveAt(*problem, x, t, 0)[0], CurveAt(*unbound, without, t, 0)[0],
+                    1e-6 * problem->curve_fit()->size());
+      }
+    }
+  }
+}
+
+TEST(CurveConstraints, OnCoordinatesOfAPolygonThroughItsDataHaveKnownAnswers) {
+  // Degree 1 and knots at the data: control points are the points themselves, E the sum of their
+  // squared distances.
+  DataSet data;
+  data.name = "corners";
+  data.points = PointsOf({{0, 0}, {1, 1}, {2, 0}, {3, 4}});
+  data.parameters = Eigen::Vector4d(0, 1, 2, 3);
+  FitSpec spec = MakeSpec(1, false, 0);
+  spec.parameters.reset();
+  spec.given_knots = {0, 0, 1, 2, 3, 3};
+  const auto problem = MakeFit(data, spec);
+  const CurveFit& fit = *problem->curve_fit();
+  // Inside, points are scaled and centred: the last one's coordinates tell by how much.
+  const double scale = fit.setting().scale;
+  const auto inside = [&](int point, int coordinate) {
+    return problem->start()[2 * point + coordinate];
+  };
+  problem->SetStart(Solve(*problem, "banded_qr"));
+  // y of P_1 is 5; x of P_2 less its place is y of P_3 less its own and 3 more: each gives way by
+  // half.
+  SetConstraints(
+      {{"y of P_1", {{3, 1.0}}, inside(1, 1) + 4.0 * scale},
+       {"x of P_2 and y of P_3", {{4, 1.0}, {7, -1.0}}, inside(2, 0) - inside(3, 1) + 3.0 * scale}},
+      problem.get());
+  for (const char* solver : {"banded_qr", "banded_cholesky", "dense_qr", "lspia", "cg", "lbfgs"}) {
+    SCOPED_TRACE(solver);
+    const Points found = fit.ControlPoints(Solve(*problem, solver));
+    const Points expected = PointsOf({{0, 0}, {1, 5}, {3.5, 0}, {3, 2.5}});
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-7);
   }
 }
 

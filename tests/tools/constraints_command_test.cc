@@ -92,8 +92,49 @@ TEST(FitCommand, TakesConstraintsThatAreNotLinearFromAProblemFile) {
   ExpectRefused(RunBatten({"fit", "--problem=" + bad}), {bad, "kapa", "kappa"});
 }
 
+TEST(FitCommand, HoldsLinearConstraintsWhateverTheParametersAre) {
+  // An end-interpolating curve begins in its first control point and ends in its last one.
+  const TemporaryFolder folder;
+  const std::string out = folder / "fit.json";
+  const std::string constraints = "point/t=0/x=11/y=-1,point/t=1/y=0.5";
+  for (const auto& [solver, kind, distance] : {std::tuple("banded_qr", "fixed", "interpolation"),
+                                               {"lspia", "fixed", "interpolation"},
+                                               {"lm_schur", "free", "free_parameter"},
+                                               {"newton", "projected", "foot_point"}}) {
+    SCOPED_TRACE(solver);
+    const Ended ended =
+        RunBatten(FitBow(constraints, solver,
+                         {"--out=" + out, "--parameter_kind=" + std::string(kind),
+                          "--terms=" + std::string(distance), "--max_iterations=5000"}),
+                  kBow);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const nlohmann::json fit = nlohmann::json::parse(ReadFile(out));
+    const nlohmann::json& points = fit["spline"]["control_points"];
+    EXPECT_NEAR(points.front()[0].get<double>(), 11.0, 1e-12 * 20.0);
+    EXPECT_NEAR(points.front()[1].get<double>(), -1.0, 1e-12 * 20.0);
+    EXPECT_NEAR(points.back()[1].get<double>(), 0.5, 1e-12 * 20.0);
+    EXPECT_TRUE(fit["audit"].is_null());
+  }
+}
+
+TEST(FitCommand, WeighsFairingByControlPoint) {
+  EXPECT_EQ(
+      RunBatten({"fit", "-", "--control_points=6", "--terms=interpolation,fairing/weight=1e-3",
+                 "--solver=lspia/fairing_factor=5/fairing_first=2/fairing_last=3",
+                 "--max_iterations=100000", "--mode=native"},
+                kBow)
+          .status,
+      0);
+  ExpectRefused(
+      RunBatten({"fit", "-", "--control_points=6", "--solver=lspia/fairing_factor=5"}, kBow),
+      {"lspia weighs the term fairing", "use fairing_factor=1"});
+  ExpectRefused(
+      RunBatten({"fit", "-", "--control_points=6", "--solver=lspia/fairing_factor=-1"}, kBow),
+      {"fairing_factor", "0 to 1e+06"});
+}
+
 TEST(FitCommand, TakesTheTermCurveFairing) {
-  for (const char* solver : {"lbfgs", "ceres_lbfgs", "ceres_lm"}) {
+  for (const char* solver : {"lbfgs", "ceres_lbfgs", "ceres_lm", "newton"}) {
     const Ended ended = RunBatten({"fit", "-", "--control_points=8",
                                    "--terms=interpolation,curve_fairing/weight=1e-3,"
                                    "curve_fairing/measure=variation/weight=1e-4",
@@ -110,9 +151,9 @@ TEST(FitCommand, TakesTheTermCurveFairing) {
     EXPECT_EQ(ended.status, 0) << kind << ended.err;
   }
   ExpectRefused(RunBatten({"fit", "-", "--control_points=8", "--terms=interpolation,curve_fairing",
-                           "--solver=newton"},
+                           "--solver=cg"},
                           kBow),
-                {"newton needs terms that are affine", "curve_fairing is not; use lbfgs"});
+                {"cg needs terms that are affine", "curve_fairing is not; use lbfgs"});
   ExpectRefused(RunBatten({"fit", "-", "--control_points=8", "--degree=1",
                            "--terms=interpolation,curve_fairing"},
                           kBow),
