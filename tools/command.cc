@@ -25,7 +25,7 @@ const std::vector<Command>& Commands() {
     auto* made = new std::vector<Command>{
         FitCommand(),     CompareCommand(), BenchCommand(),     MergeCommand(),
         RegressCommand(), ReportCommand(),  ReproduceCommand(), SubdivideCommand(),
-        ListCommand(),    CheckCommand(),   NewCommand(),
+        ListCommand(),    CheckCommand(),   NewCommand(),       ReplayCommand(),
     };
     for (Command& command : *made) command.flags.push_back(PluginsFlag());
     made->push_back(HelpCommand());

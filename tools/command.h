@@ -44,6 +44,7 @@ Command CompareCommand();    // compare_command.cc
 Command BenchCommand();      // bench_command.cc
 Command MergeCommand();      // merge_command.cc
 Command RegressCommand();    // regress_command.cc
+Command ReplayCommand();     // replay_command.cc
 Command ReproduceCommand();  // reproduce_command.cc
 Command SubdivideCommand();  // subdivide_command.cc
 Command ReportCommand();     // report_command.cc
