@@ -116,9 +116,10 @@ Missed MissCurvature(const AuditedFit& fit, const AuditedCondition& condition,
   }
   const Real kappa = bend / (speed * speed * speed);
   const Real amount = condition.amount;
-  const Real off = a.size() == 2 ? kappa - amount : (kappa * kappa - amount * amount) / (2 * amount);
-  const Real of_kappa =
-      (of_b + of_a * std::sqrt(Dot(b, b)) / speed) / (speed * speed) + 3 * std::abs(kappa) * of_a / speed;
+  const Real off =
+      a.size() == 2 ? kappa - amount : (kappa * kappa - amount * amount) / (2 * amount);
+  const Real of_kappa = (of_b + of_a * std::sqrt(Dot(b, b)) / speed) / (speed * speed) +
+                        3 * std::abs(kappa) * of_a / speed;
   const Real slope = a.size() == 2 ? 1 : kappa / amount;
   return {condition.unit * std::abs(off), condition.unit * slope * of_kappa};
 }

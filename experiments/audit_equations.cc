@@ -113,9 +113,8 @@ void CoupledEquations::ChooseIndependent(std::size_t num_eliminated) {
   Rows rows, sizes;
   const auto length = [](const Row& row) { return std::sqrt(Dot(row, row)); };
   const auto next = [&] {
-    return std::max_element(left.begin(), left.end(), [&](const Row& a, const Row& b) {
-      return length(a) < length(b);
-    });
+    return std::max_element(left.begin(), left.end(),
+                            [&](const Row& a, const Row& b) { return length(a) < length(b); });
   };
   bool is_short = false;
   while (orthonormal_.size() < num_eliminated && !is_short) {
@@ -160,7 +159,8 @@ void CoupledEquations::Invert() {
     std::swap(a[k], a[best]);
     std::swap(inverse_[k], inverse_[best]);
     if (a[k][k] == 0) {
-      failure_ = "takes coordinates of control points from linear constraints that do not hold them";
+      failure_ =
+          "takes coordinates of control points from linear constraints that do not hold them";
       return;
     }
     const Real pivot = a[k][k];
@@ -206,8 +206,8 @@ void CoupledEquations::Reduce(std::vector<Real>* gradient, std::vector<Real>* ro
     for (std::size_t b = 0; b < n; ++b) {
       Real follows = 0;  // entry b of what entry k moves
       for (std::size_t r = 0; r < n; ++r) follows += inverse_[b][r] * rows_[r][k];
-      worst += std::abs(follows) *
-               (error[pivots_[b]] + static_cast<Real>(1 + n) * of_rows[pivots_[b]]);
+      worst +=
+          std::abs(follows) * (error[pivots_[b]] + static_cast<Real>(1 + n) * of_rows[pivots_[b]]);
     }
     (*gradient)[entries_[k]] = g[k];
     (*rounding)[entries_[k]] = worst;

@@ -94,10 +94,11 @@ Verdict VerifyMinimum(const Claim& claim, const AuditReport& report) {
                        " (allowed with rounding: " + Number(target) + ")"};
   }
   if (!(report.projected_gradient_norm <= target)) {
-    return {false, "claims a minimum under linear constraints, but |g| projected onto what they "
-                   "leave is " +
-                       Number(report.projected_gradient_norm) +
-                       " (allowed with rounding: " + Number(target) + ")"};
+    return {false,
+            "claims a minimum under linear constraints, but |g| projected onto what they "
+            "leave is " +
+                Number(report.projected_gradient_norm) +
+                " (allowed with rounding: " + Number(target) + ")"};
   }
   if (!(std::hypot(report.gradient_norm, report.pull_norm) <= target)) {
     return {false,

@@ -66,8 +66,7 @@ class ConstraintWriter {
     return options;
   }
   static bool IsFree(const NameSpec& spec, const OptionValues& options) {
-    const bool may_be =
-        spec.name == "point" || spec.name == "tangent" || spec.name == "curvature";
+    const bool may_be = spec.name == "point" || spec.name == "tangent" || spec.name == "curvature";
     return may_be && options.Integer("free") > 0;
   }
 
@@ -157,8 +156,7 @@ class ConstraintWriter {
 
   double ParameterOf(const NameSpec& spec, const OptionValues& options) const {
     if (!IsFree(spec, options)) return options.Real("t");
-    const auto place =
-        std::distance(numbers_.begin(), numbers_.find(options.Integer("free")));
+    const auto place = std::distance(numbers_.begin(), numbers_.find(options.Integer("free")));
     for (const VariableRange& range : problem_.ranges()) {
       if (range.name == kConstraintParameters) return x_[range.begin + place];
     }

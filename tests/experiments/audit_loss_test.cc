@@ -176,11 +176,10 @@ TEST(MeasureFit, AuditsEveryLoss) {
 }
 
 TEST(MeasureFit, AuditsLossesBesideOtherTerms) {
-  const auto problem =
-      BowFit(ParameterKind::kFixed,
-             "interpolation/loss=cauchy/loss_scale=0.05,interpolation/weight=0.1,"
-             "fairing/weight=1e-6,end_point/loss=huber/loss_scale=0.01,"
-             "end_tangent/units=source/loss=tukey/loss_scale=0.3");
+  const auto problem = BowFit(ParameterKind::kFixed,
+                              "interpolation/loss=cauchy/loss_scale=0.05,interpolation/weight=0.1,"
+                              "fairing/weight=1e-6,end_point/loss=huber/loss_scale=0.01,"
+                              "end_tangent/units=source/loss=tukey/loss_scale=0.3");
   ExpectVerified(*problem, "lbfgs");
 }
 
@@ -192,8 +191,7 @@ TEST(MeasureFit, AuditsLossesOfMovingParameters) {
 }
 
 TEST(MeasureFit, CatchesAnotherScaleOfALoss) {
-  const auto problem =
-      BowFit(ParameterKind::kFixed, "interpolation/loss=cauchy/loss_scale=0.05");
+  const auto problem = BowFit(ParameterKind::kFixed, "interpolation/loss=cauchy/loss_scale=0.05");
   const auto other =
       BowFit(ParameterKind::kFixed, "interpolation/loss=cauchy/loss_scale=0.05000001");
   const RunResult run = RunSolver(*problem, "lbfgs", {});

@@ -51,8 +51,7 @@ TEST(JointDescent, CountsThePassAfterAStepThatIsNotTaken) {
       SolverTrial trial(*problem, solver, {kIterations});
       const Told told = Tell(&trial);
       EXPECT_EQ(told.accepted, kIterations) << solver;
-      EXPECT_EQ(trial.context.count(Evaluation::kJacobian),
-                1 + told.accepted + 2 * told.rejected);
+      EXPECT_EQ(trial.context.count(Evaluation::kJacobian), 1 + told.accepted + 2 * told.rejected);
       rejected += told.rejected;
     }
   }
