@@ -119,7 +119,7 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
   const bool nothing_finite = !std::isfinite(claim.energy) && !std::isfinite(report.energy);
   if (nothing_finite && !claim.minimum) return {true, ""};
   for (const auto verify : {&VerifyNumbers, &VerifyEnergy, &VerifyConstraints}) {
-    const Verdict verdict = verify(claim, report);
+    Verdict verdict = verify(claim, report);
     if (!verdict.holds) return verdict;
   }
   if (!(report.foot_excess <= report.foot_allowed)) {

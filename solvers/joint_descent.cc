@@ -26,7 +26,7 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
   if (objective.problem().has_bounds()) return WhyNoBounds(objective, name);
-  const std::string why_no_order = WhyNoOrder(objective.problem(), name);
+  std::string why_no_order = WhyNoOrder(objective.problem(), name);
   if (!why_no_order.empty()) return why_no_order;
   return name +
          " takes one free_parameter or foot_point term without loss, terms that are affine, and no "
