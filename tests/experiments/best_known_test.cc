@@ -61,11 +61,11 @@ TEST(BestKnown, StandsInTheNotesBesideTheLowestOfTheRuns) {
   }
   EXPECT_THAT(ComparisonNotes(result),
               Contains("rhino_free: best known E at feet 274.2809, the lowest of these runs "
-                       "411.4214, 50 % above"));
+                       "411.4214, 50.0 % above"));
   result.rows[0].report.energy_at_foot_points = best * (1 + 1e-12);
   EXPECT_THAT(ComparisonNotes(result), Contains(HasSubstr("the lowest of these runs equals it")));
   result.rows[0].report.energy_at_foot_points = 0.9 * best;
-  EXPECT_THAT(ComparisonNotes(result), Contains(HasSubstr("10 % below, which is news")));
+  EXPECT_THAT(ComparisonNotes(result), Contains(HasSubstr("10.0 % below, which is news")));
   // A least energy is no best known one.
   EXPECT_THAT(ComparisonNotes(result), Not(Contains(HasSubstr("rhino: best known"))));
 }
