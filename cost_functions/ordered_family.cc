@@ -56,7 +56,7 @@ bool OrderedFamily::DoAddHessianTimes(const Eigen::VectorXd& x, const Eigen::Vec
   along.segment(begin_, count_) = order.Apply(direction.segment(begin_, count_));
   Eigen::VectorXd by_t = Eigen::VectorXd::Zero(x.size());
   if (inner_->AddHessianTimes(Ordered(x, order), along, &by_t) != Status::kOk) return false;
-  by_t.segment(begin_, count_) = order.ApplyTransposed(by_t.segment(begin_, count_));
+  by_t.segment(begin_, count_) = order.Apply(by_t.segment(begin_, count_));
   *product += by_t;
   return true;
 }

@@ -6,39 +6,85 @@
 
 namespace batten {
 
-OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double period) {
-  const auto m = static_cast<int>(s.size());
-  struct Block {
-    int begin;
-    int size;
-    double mean;
-  };
+namespace {
+
+/// Points begin..begin + size - 1 that share one t.
+struct Block {
+  int begin;
+  int size;
+  double mean;
+};
+
+/// Equal points stay where they are, to the last bit.
+double PooledMean(double a, int size_of_a, double b, int size_of_b) {
+  return a == b ? b : (a * size_of_a + b * size_of_b) / (size_of_a + size_of_b);
+}
+
+std::vector<Block> PoolViolators(const Eigen::Ref<const Eigen::VectorXd>& s) {
   std::vector<Block> blocks;
-  for (int i = 0; i < m; ++i) {
+  for (int i = 0; i < s.size(); ++i) {
     Block block = {i, 1, s[i]};
     while (!blocks.empty() && !(blocks.back().mean < block.mean)) {
       const Block& before = blocks.back();
-      // Equal points stay where they are, to the last bit.
-      const double mean =
-          before.mean == block.mean
-              ? block.mean
-              : (before.mean * before.size + block.mean * block.size) / (before.size + block.size);
+      const double mean = PooledMean(before.mean, before.size, block.mean, block.size);
       block = {before.begin, before.size + block.size, mean};
       blocks.pop_back();
     }
     blocks.push_back(block);
   }
-  t.resize(m);
+  return blocks;
+}
+
+/// The last blocks that are a period or more after the first one join it, which may pass others
+/// then: neighbours of which the mean of the former is not below that of the latter share one t at
+/// the nearest point, around the circle as on the line. Returns how many points come a period on.
+int PoolAcrossSeam(double period, std::vector<Block>* blocks) {
+  Block first = blocks->front();
+  int num_cut = 0;
+  std::size_t low = 1;
+  std::size_t high = blocks->size();
+  // Both sides of the seam round by themselves.
+  const double rounding =
+      8.0 * std::numeric_limits<double>::epsilon() * (std::abs(first.mean) + period);
+  while (low < high) {
+    const Block& last = (*blocks)[high - 1];
+    const Block& next = (*blocks)[low];
+    const double back = last.mean - period;
+    if (back >= first.mean - rounding) {
+      if (back > first.mean + rounding) {
+        first.mean = PooledMean(first.mean, first.size + num_cut, back, last.size);
+      }
+      num_cut += last.size;
+      --high;
+    } else if (num_cut > 0 && !(first.mean < next.mean)) {
+      first.mean = PooledMean(first.mean, first.size + num_cut, next.mean, next.size);
+      first.size += next.size;
+      ++low;
+    } else {
+      break;
+    }
+  }
+  if (num_cut == 0) return 0;
+  std::vector<Block> pooled = {first};
+  pooled.insert(pooled.end(), blocks->begin() + static_cast<std::ptrdiff_t>(low),
+                blocks->begin() + static_cast<std::ptrdiff_t>(high));
+  const int end = blocks->back().begin + blocks->back().size;
+  pooled.push_back({end - num_cut, num_cut, first.mean + period});
+  blocks->swap(pooled);
+  return num_cut;
+}
+
+}  // namespace
+
+OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double period) {
+  std::vector<Block> blocks = PoolViolators(s);
+  if (period > 0.0 && !blocks.empty()) num_cut = PoolAcrossSeam(period, &blocks);
+  t.resize(s.size());
   for (const Block& block : blocks) {
     block_begins.push_back(block.begin);
     t.segment(block.begin, block.size).setConstant(block.mean);
   }
-  block_begins.push_back(m);
-  if (period == 0.0) return;
-  // Both sides of the seam move by themselves, and round by themselves.
-  const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * (std::abs(t[0]) + period);
-  while (num_cut < m && t[m - 1 - num_cut] >= t[0] + period - rounding) ++num_cut;
-  t.tail(num_cut).setConstant(t[0] + period);
+  block_begins.push_back(static_cast<int>(s.size()));
 }
 
 std::vector<int> OrderedParameters::BlockOf() const {
@@ -57,7 +103,11 @@ Eigen::VectorXd OrderedParameters::Apply(const Eigen::Ref<const Eigen::VectorXd>
     const int size = block_begins[b + 1] - block_begins[b];
     dt.segment(block_begins[b], size).setConstant(ds.segment(block_begins[b], size).mean());
   }
-  dt.tail(num_cut).setConstant(dt[0]);
+  if (num_cut == 0) return dt;
+  const int first = block_begins[1];
+  const double mean = (ds.head(first).sum() + ds.tail(num_cut).sum()) / (first + num_cut);
+  dt.head(first).setConstant(mean);
+  dt.tail(num_cut).setConstant(mean);
   return dt;
 }
 
@@ -81,19 +131,6 @@ Eigen::VectorXd OrderedParameters::SteepestAscent(
   ascent.tail(num_cut) = around.head(num_cut);
   ascent.head(first) = around.tail(first);
   return ascent;
-}
-
-Eigen::VectorXd OrderedParameters::ApplyTransposed(
-    const Eigen::Ref<const Eigen::VectorXd>& dt) const {
-  Eigen::VectorXd kept = dt;
-  kept[0] += dt.tail(num_cut).sum();
-  kept.tail(num_cut).setZero();
-  Eigen::VectorXd ds(dt.size());
-  for (std::size_t b = 0; b + 1 < block_begins.size(); ++b) {
-    const int size = block_begins[b + 1] - block_begins[b];
-    ds.segment(block_begins[b], size).setConstant(kept.segment(block_begins[b], size).mean());
-  }
-  return ds;
 }
 
 }  // namespace batten

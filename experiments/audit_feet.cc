@@ -5,6 +5,7 @@
 
 #include "experiments/audit.h"
 #include "experiments/audit_curve.h"
+#include "experiments/audit_loss.h"
 
 namespace batten {
 namespace {
@@ -70,9 +71,9 @@ struct AtParameter {
   Real slope = 0;
 };
 
-/// |dE/dt| |dt/dP| of one point: dt/dP_jc = -(B_j' r_c + B_j C_c') / (d slope / dt), the latter by
-/// a difference.
-Real RoundingOfFoot(const AuditedFit& fit, const double* point, double t, double weight,
+/// |dE/dt| |dt/dP| of one point of this weight: dt/dP_jc = -(B_j' r_c + B_j C_c') / (d slope / dt),
+/// the latter by a difference.
+Real RoundingOfFoot(const AuditedFit& fit, const double* point, double t, Real weight,
                     AuditCurve* curve) {
   const AtParameter here(fit, point, t, curve);
   const double step = 1e-6 * static_cast<double>(curve->domain_end() - curve->domain_begin());
@@ -114,7 +115,7 @@ void AuditFeet(const AuditedFit& fit, AuditReport* report) {
     const double* const point = &fit.points[i * static_cast<std::size_t>(fit.dimension)];
     const AtParameter here(fit, point, fit.parameters[i], &curve);
     const auto distance = static_cast<double>(std::sqrt(here.squared_distance));
-    const double weight = fit.weights.empty() ? 1.0 : fit.weights[i];
+    const Real weight = EnergyOfPoint(fit, i, here.squared_distance).largest;
     report->foot_rounding +=
         static_cast<double>(RoundingOfFoot(fit, point, fit.parameters[i], weight, &curve));
     const double excess = distance - NearestDistance(samples, point, fit.dimension);

@@ -16,9 +16,10 @@ struct AuditSums {
   static constexpr int kMostCoordinates = 16;
 
   Real energy = 0;
+  Real weighted_squares = 0;  // sum of (dE / d|r|^2) |r|^2, E itself without losses
   Real squared_distance = 0;
   Real largest = 0;
-  Real squared_rounding = 0;      // of the residuals: sum of w delta^2
+  Real squared_rounding = 0;      // of the residuals: sum of w delta^2, w without losses
   std::vector<Real> gradient;     // n x d
   std::vector<Real> rounding;     // its worst case, n x d
   std::vector<int> num_summands;  // of E that each control point moves, n
@@ -37,6 +38,12 @@ struct AuditSums {
 
 /// Adds the integrals and ends of `fit`.
 void AddTermsBesidePoints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums);
+/// The largest coordinates of the data that the run's own, which are centred, can come from, d.
+std::vector<AuditSums::Real> DataSizes(const AuditedFit& fit, const AuditSums& sums);
+/// Measures equations and conditions; turns gradient and rounding of `sums` into those in the
+/// control points that the run does not eliminate, entries of the others being 0.
+void AuditConstraints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums,
+                      AuditReport* report);
 
 }  // namespace batten
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/audit_loss.h"
 #include "experiments/audit_sums.h"
 
 namespace batten {
@@ -33,45 +34,56 @@ Rule FejerRule(int n) {
   return rule;
 }
 
-/// The largest coordinates of the data that the run's own, which are centred, can come from.
-std::vector<Real> DataSizes(const AuditedFit& fit, const AuditSums& sums) {
-  std::vector<Real> sizes(static_cast<std::size_t>(fit.dimension), 0);
-  for (std::size_t k = 0; k < fit.points.size(); ++k) {
-    Real& size = sizes[k % sizes.size()];
-    size = std::max(size, std::abs(static_cast<Real>(fit.points[k])));
-  }
-  for (std::size_t c = 0; c < sizes.size(); ++c) sizes[c] += sums.extent[c];
-  return sizes;
-}
+/// A term factor * rho(|C^(k)(t) - value|^2) where the curve now is.
+struct Place {
+  int derivative = 0;
+  Real factor = 1;
+  std::vector<double> value;  // empty: 0
+  AuditedLoss loss;
+  /// By how much more than one rounding of each of its numbers the run may know the derivative less
+  /// well.
+  Real relative = 0;
+};
 
-/// factor * |C^(k)(t) - value|^2 where the curve now is; no value: 0. `relative`: by how much more
-/// than one rounding of each of its numbers the run may know the derivative less well.
-void AddPlace(const AuditedFit& fit, int k, Real factor, const std::vector<double>& value,
-              const std::vector<Real>& data_sizes, Real relative, AuditCurve* curve,
-              AuditSums* sums) {
+void AddPlace(const AuditedFit& fit, const Place& place, const std::vector<Real>& data_sizes,
+              AuditCurve* curve, AuditSums* sums) {
+  const auto d = static_cast<std::size_t>(fit.dimension);
   std::vector<Real> row;
   std::vector<Real> sizes;
-  curve->DerivativeRow(k, &row, &sizes);
-  for (int c = 0; c < fit.dimension; ++c) {
-    const auto at = static_cast<std::size_t>(c);
-    Real residual = value.empty() ? 0 : -static_cast<Real>(value[at]);
-    Real rounding = std::abs(residual);
+  curve->DerivativeRow(place.derivative, &row, &sizes);
+  std::vector<Real> residual(d);
+  std::vector<Real> rounding(d);
+  Real squared = 0;
+  Real squared_rounding = 0;
+  for (std::size_t c = 0; c < d; ++c) {
+    residual[c] = place.value.empty() ? 0 : -static_cast<Real>(place.value[c]);
+    rounding[c] = std::abs(residual[c]);
     for (int j = 0; j <= fit.degree; ++j) {
-      const Real point = fit.control_points[curve->ControlPoint(j) * fit.dimension + c];
-      residual += row[j] * point;
-      rounding += sizes[j] * (std::abs(point) + data_sizes[at]);
+      const Real point =
+          fit.control_points[static_cast<std::size_t>(curve->ControlPoint(j)) * d + c];
+      residual[c] += row[j] * point;
+      rounding[c] += sizes[j] * (std::abs(point) + data_sizes[c]);
     }
-    rounding *= AuditSums::kUnitRoundoff * (1 + relative);
-    sums->energy += factor * residual * residual;
-    sums->squared_rounding += factor * rounding * rounding;
-    for (int j = 0; j <= fit.degree; ++j) {
-      const int entry = curve->ControlPoint(j) * fit.dimension + c;
-      sums->gradient[entry] += 2 * factor * row[j] * residual;
+    rounding[c] *= AuditSums::kUnitRoundoff * (1 + place.relative);
+    squared += residual[c] * residual[c];
+    squared_rounding += rounding[c] * rounding[c];
+  }
+  const AuditedRho rho = EvaluateRho(place.loss, squared);
+  if (place.loss.kind != AuditedLoss::Kind::kNone) {
+    std::fill(rounding.begin(), rounding.end(), std::sqrt(squared_rounding));
+  }
+  sums->energy += place.factor * rho.value;
+  sums->weighted_squares += place.factor * rho.slope * squared;
+  sums->squared_rounding += place.factor * squared_rounding;
+  for (int j = 0; j <= fit.degree; ++j) {
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t entry = static_cast<std::size_t>(curve->ControlPoint(j)) * d + c;
+      sums->gradient[entry] += 2 * place.factor * rho.slope * row[j] * residual[c];
       // The row itself is rounded where its entries are small differences of large ones.
       sums->rounding[entry] +=
-          2 * factor *
-          (std::abs(row[j]) * rounding +
-           AuditSums::kUnitRoundoff * (1 + relative) * sizes[j] * std::abs(residual));
+          2 * place.factor *
+          (std::abs(row[j]) * rounding[c] +
+           AuditSums::kUnitRoundoff * (1 + place.relative) * sizes[j] * std::abs(residual[c]));
     }
   }
   ++sums->num_places;
@@ -95,7 +107,7 @@ void AddIntegral(const AuditedFit& fit, const AuditedIntegral& integral,
     const Real relative = (std::abs(begin) + length) / length;
     for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
       curve->MoveTo(begin + (1 + rule.nodes[g]) * length / 2);
-      AddPlace(fit, k, factor * rule.weights[g] * length / 2, {}, data_sizes, relative, curve,
+      AddPlace(fit, {k, factor * rule.weights[g] * length / 2, {}, {}, relative}, data_sizes, curve,
                sums);
     }
   }
@@ -103,6 +115,16 @@ void AddIntegral(const AuditedFit& fit, const AuditedIntegral& integral,
 }
 
 }  // namespace
+
+std::vector<Real> DataSizes(const AuditedFit& fit, const AuditSums& sums) {
+  std::vector<Real> sizes(static_cast<std::size_t>(fit.dimension), 0);
+  for (std::size_t k = 0; k < fit.points.size(); ++k) {
+    Real& size = sizes[k % sizes.size()];
+    size = std::max(size, std::abs(static_cast<Real>(fit.points[k])));
+  }
+  for (std::size_t c = 0; c < sizes.size(); ++c) sizes[c] += sums.extent[c];
+  return sizes;
+}
 
 void AddTermsBesidePoints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums) {
   if (fit.integrals.empty() && fit.ends.empty()) return;
@@ -113,7 +135,7 @@ void AddTermsBesidePoints(const AuditedFit& fit, AuditCurve* curve, AuditSums* s
   for (const AuditedEnd& end : fit.ends) {
     CHECK(!fit.periodic && end.value.size() == static_cast<std::size_t>(fit.dimension));
     curve->MoveTo(end.at_end ? curve->domain_end() : curve->domain_begin());
-    AddPlace(fit, end.derivative, end.factor, end.value, data_sizes, 0, curve, sums);
+    AddPlace(fit, {end.derivative, end.factor, end.value, end.loss, 0}, data_sizes, curve, sums);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "experiments/audited_terms.h"
 
+#include <glog/logging.h>
+
 #include <cmath>
 #include <optional>
 
@@ -15,6 +17,19 @@ bool Resolve(const Problem::TermInstance& term, NameSpec* name, OptionValues* op
   std::string error;
   return ParseNameSpec(term.name, name, &error) &&
          TermRegistry::Global().Resolve(*name, &registered, options, &error);
+}
+
+AuditedLoss LossOf(const CurveFit& fit, const OptionValues& options) {
+  using Kind = AuditedLoss::Kind;
+  const std::string& loss = options.Word("loss");
+  AuditedLoss made;
+  made.scale = options.Real("loss_scale") * fit.size();
+  if (loss == "huber") made.kind = Kind::kHuber;
+  if (loss == "cauchy") made.kind = Kind::kCauchy;
+  if (loss == "tukey") made.kind = Kind::kTukey;
+  if (loss == "soft_l1") made.kind = Kind::kSoftL1;
+  CHECK(made.kind != Kind::kNone || loss == "none") << loss;
+  return made;
 }
 
 AuditedIntegral Integral(const CurveFit& fit, const OptionValues& options) {
@@ -46,7 +61,10 @@ AuditedEnd End(const CurveFit& fit, int derivative, const OptionValues& options,
   end.at_end = at_end;
   end.derivative = derivative;
   const double unit = Unit(fit.basis(), derivative, options, at_end);
+  // rho is of unit * (C^(k) - value): with b, s and rho go in proportion.
   end.factor = options.Real("weight") * unit * unit;
+  end.loss = LossOf(fit, options);
+  end.loss.scale /= unit;
   Eigen::RowVectorXd given;
   std::string beyond;
   GivenCoordinates(options, fit.dimension(), &given, &beyond);
@@ -66,15 +84,19 @@ bool IsDistanceTerm(const Problem::TermInstance& term, const CurveFit& fit) {
          name.name == DistanceTermOf(fit.spec().parameter_kind);
 }
 
-bool AddTermsBesideDistances(const Problem& problem, AuditedFit* plain) {
+bool AddTerms(const Problem& problem, AuditedFit* plain) {
   const CurveFit& fit = *problem.curve_fit();
+  plain->distances.clear();
   for (const Problem::TermInstance& term : problem.terms()) {
-    if (term.family->loss() != nullptr) return false;
-    if (IsDistanceTerm(term, fit)) continue;
     NameSpec name;
     OptionValues options;
     if (!Resolve(term, &name, &options)) return false;
+    if (IsDistanceTerm(term, fit)) {
+      plain->distances.push_back({options.Real("weight"), LossOf(fit, options)});
+      continue;
+    }
     if (name.name == "fairing") {
+      if (term.family->loss() != nullptr) return false;
       plain->integrals.push_back(Integral(fit, options));
       continue;
     }

@@ -9,9 +9,10 @@ namespace batten {
 /// Whether this term of the fit is the distance from the data and nothing else.
 bool IsDistanceTerm(const Problem::TermInstance& term, const CurveFit& fit);
 
-/// Writes the terms of `problem`, a curve fit, that are no distances into `plain`, as the terms'
-/// pages define them. False where the audit does not know one: a loss, another formula.
-bool AddTermsBesideDistances(const Problem& problem, AuditedFit* plain);
+/// Writes the terms of `problem`, a curve fit, into `plain`, as the terms' pages define them. False
+/// where the audit does not know one: another formula, or a loss on a sum that stands for an
+/// integral.
+bool AddTerms(const Problem& problem, AuditedFit* plain);
 
 }  // namespace batten
 

@@ -51,10 +51,11 @@ bool WriteTrace(const Problem& problem, const RunResult& run, const std::string&
   return !file.fail();
 }
 
-/// Claims of a minimum that the audit does not cover are held against what run control found: |g|
-/// at the end as the problem's own terms give it.
+/// Claims of a minimum whose |g| the audit does not cover are held against what run control found:
+/// |g| at the end as the problem's own terms give it.
 bool ClaimIsBelied(const ComparisonRow& row, const RunSpec& spec) {
-  if (row.report.audited) return !row.report.verdict.holds;
+  if (row.report.audited && !row.report.verdict.holds) return true;
+  if (row.report.audited && row.report.audit.covers_gradient) return false;
   const Claim claim = ClaimOf(row.run, spec);
   if (!claim.minimum) return false;
   const double allowed = std::max(claim.gradient_target, row.run.gradient_floor);

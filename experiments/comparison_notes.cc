@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "cost_functions/options.h"
 #include "experiments/comparison_tables.h"
 #include "experiments/short_number.h"
+#include "problems/catalogue.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -100,6 +102,32 @@ std::string Basins(const ComparisonResult& result, int problem) {
   return text;
 }
 
+/// Of a catalogue's problem whose parameters move: how far above the best known energy the lowest
+/// of these runs is. Empty where none is stated or nothing ran.
+std::string AboveBestKnown(const ComparisonResult& result, std::size_t problem) {
+  CatalogueEntry entry;
+  std::string ignored;
+  if (problem >= result.spec.problems.size() ||
+      !FindProblem(result.spec.problems[problem], &entry, &ignored) ||
+      entry.spec.parameter_kind == ParameterKind::kFixed || !(entry.reference_energy > 0.0)) {
+    return "";
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const ComparisonRow& row : result.rows) {
+    if (row.problem_index != static_cast<int>(problem) || !row.run.skipped.empty()) continue;
+    lowest = std::min(lowest, row.report.energy_at_foot_points);
+  }
+  if (std::isinf(lowest)) return "";
+  // The last digits are those of the rounding floor that the ends were polished to.
+  constexpr double kEqual = 1e-8;
+  const double excess = lowest / entry.reference_energy - 1.0;
+  const std::string text = entry.name + ": best known E at feet " +
+                           ShortNumber(entry.reference_energy, 7) + ", the lowest of these runs ";
+  if (std::abs(excess) <= kEqual) return text + "equals it";
+  return text + ShortNumber(lowest, 7) + ", " + ShortNumber(100.0 * std::abs(excess), 3) + " % " +
+         (excess > 0.0 ? "above" : "below, which is news");
+}
+
 /// What the solver had to say, with the observed rate beside a predicted one.
 std::string RowNote(const ComparisonRow& row) {
   std::string text;
@@ -130,6 +158,8 @@ std::vector<std::string> ComparisonNotes(const ComparisonResult& result) {
     notes.push_back(AboutProblem(*result.problems[i], result.minimum_energies[i], unique));
     const std::string basins = Basins(result, static_cast<int>(i));
     if (!basins.empty()) notes.push_back(basins);
+    const std::string above = AboveBestKnown(result, i);
+    if (!above.empty()) notes.push_back(above);
     if (result.spec.run.mode == Mode::kNative) {
       const std::string spread = SpreadOfAccuracy(result, static_cast<int>(i));
       if (!spread.empty()) notes.push_back(spread);

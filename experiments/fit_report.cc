@@ -5,6 +5,7 @@
 #include <limits>
 #include <thread>
 
+#include "experiments/audited_constraints.h"
 #include "experiments/audited_terms.h"
 #include "problems/free_view.h"
 #include "splines/closest_point.h"
@@ -21,16 +22,10 @@ double DistanceWeight(const Problem& problem) {
   return weight;
 }
 
-/// Where no constraint holds more than parameters, and the audit knows all terms.
+/// Where the audit knows all terms.
 bool AuditApplies(const Problem& problem) {
-  const CurveFit& fit = *problem.curve_fit();
-  if (problem.nonlinear_constraints() != nullptr) return false;
   AuditedFit ignored;
-  if (DistanceWeight(problem) == 0.0 || !AddTermsBesideDistances(problem, &ignored)) return false;
-  if (fit.spec().parameter_kind == ParameterKind::kFixed) return problem.elimination().trivial();
-  const VariableRange& control_points = problem.ranges().front();
-  if (!problem.elimination().LeavesAll(0, control_points.size)) return false;
-  return fit.setting().keep_order || FreeView::Make(problem) != nullptr;
+  return DistanceWeight(problem) > 0.0 && AddTerms(problem, &ignored);
 }
 
 std::vector<ParameterState> ParameterStates(const Problem& problem, const Eigen::VectorXd& x) {
@@ -67,7 +62,7 @@ std::vector<int> SharedParameters(const CurveFit& fit, const Eigen::VectorXd& x)
   return blocks;
 }
 
-AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double term_weight) {
+AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x) {
   const auto copy = [](const auto& matrix) {
     return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
   };
@@ -85,11 +80,8 @@ AuditedFit PlainNumbers(const Problem& problem, const Eigen::VectorXd& x, double
   plain.at_foot_points = fit.is_projected();
   plain.length = problem.units().length;
   if (fit.data().weights.has_value()) plain.weights = copy(*fit.data().weights);
-  if (term_weight != 1.0) {
-    plain.weights.resize(plain.parameters.size(), 1.0);
-    for (double& weight : plain.weights) weight *= term_weight;
-  }
-  AddTermsBesideDistances(problem, &plain);
+  AddTerms(problem, &plain);
+  AddConstraints(problem, x, &plain);
   return plain;
 }
 
@@ -150,8 +142,11 @@ FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec
   report.shape = ShapeBesideData(*fit, curve, feet);
   if (curve.dimension() >= 2) report.fairness = MeasureFairness(curve);
   if (report.audited) {
-    report.audit = Audit(PlainNumbers(problem, run.x, weight));
-    report.verdict = Verify(ClaimOf(run, spec), report.audit);
+    report.audit = Audit(PlainNumbers(problem, run.x));
+    Claim claim = ClaimOf(run, spec);
+    constexpr double kHeld = 1e-10;  // docs/constraints.md
+    claim.violation_target = kHeld * fit->size();
+    report.verdict = Verify(claim, report.audit);
   }
   return report;
 }
@@ -164,6 +159,7 @@ Claim ClaimOf(const RunResult& run, const RunSpec& spec) {
   claim.energy = run.energy;
   claim.gradient_norm = run.gradient_norm;
   claim.start_energy = run.start_energy;
+  claim.violation = run.violation;
   const bool race = spec.mode == Mode::kRace;
   switch (run.outcome.reason) {
     case StopReason::kSolved:

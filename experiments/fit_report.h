@@ -22,9 +22,9 @@ struct FitReport {
   double energy_at_foot_points = 0.0;     // sum of w |C(foot) - Q|^2
   std::optional<CurveShape> shape;        // none in dimension 1, or without a curve
   std::optional<CurveFairness> fairness;  // the same
-  /// False where the audit does not apply: it knows distances from the data, fairing, end_point,
-  /// end_tangent and end_curvature without loss, on unconstrained control points. `audit` and
-  /// `verdict` then say nothing.
+  /// False where the audit does not apply: it knows distances from the data, end_point, end_tangent
+  /// and end_curvature with any loss, fairing without one, linear constraints, and, but for |g|,
+  /// the others. `audit` and `verdict` then say nothing.
   bool audited = false;
   AuditReport audit;
   Verdict verdict;  // of the run's claim against the audit

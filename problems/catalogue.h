@@ -20,7 +20,7 @@ struct CatalogueEntry {
   std::string path;       // of the problem file
   std::string data_path;  // resolved
   FitSpec spec;
-  double reference_energy = 0.0;  // E* in the user's units; NaN: not stated
+  double reference_energy = 0.0;  // E*; not fixed t: best known at feet; user's units, NaN: none
   std::string citation;
   std::string summary;
   /// Of a plugin's problem, whose file is `path` and `data_path`: its data, instead of read ones.

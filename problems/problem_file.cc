@@ -140,14 +140,17 @@ bool ReadData(const StrictObject& file, CatalogueEntry* entry) {
   return file.Refuse("data", "a file in " + folders);
 }
 
+/// With moving parameters there are many minima, of which nobody knows that one is the least: what
+/// is stated there is the lowest energy at foot points that was found.
 bool ReadReference(const StrictObject& file, CatalogueEntry* entry) {
   StrictObject reference;
   std::string source;  // how the energy was computed: for the reader of the file
   entry->reference_energy = std::numeric_limits<double>::quiet_NaN();
   if (!file.Has("reference")) return true;
-  return file.Object("reference", kRequired, &reference) &&
-         reference.HasOnly({"energy", "source"}) &&
-         reference.Number("energy", kRequired, 0.0, kInfinity, &entry->reference_energy) &&
+  const char* const key =
+      entry->spec.parameter_kind == ParameterKind::kFixed ? "energy" : "best_known";
+  return file.Object("reference", kRequired, &reference) && reference.HasOnly({key, "source"}) &&
+         reference.Number(key, kRequired, 0.0, kInfinity, &entry->reference_energy) &&
          reference.Text("source", kOptional, &source);
 }
 

@@ -27,10 +27,10 @@ Status FootNewtonSolver::CompleteStart(const Eigen::VectorXd& x, Eigen::VectorXd
   return ProjectParameters(objective(), context()->threads(), x, all);
 }
 
-bool FootNewtonSolver::Complete(Eigen::VectorXd* all) {
+Status FootNewtonSolver::Complete(Eigen::VectorXd* all) {
   constexpr int kSteps = 2;
   trial()->ImproveFeet(kSteps, all);
-  return true;
+  return Status::kOk;
 }
 
 std::optional<Outcome> FootNewtonSolver::DoStep(Eigen::VectorXd* x) {

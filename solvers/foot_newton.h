@@ -21,7 +21,7 @@ class FootNewtonSolver final : public JointDescent {
   void Restore(const std::vector<double>& state) override;
 
  private:
-  bool Complete(Eigen::VectorXd* all) override;
+  Status Complete(Eigen::VectorXd* all) override;
   Status CompleteStart(const Eigen::VectorXd& x, Eigen::VectorXd* all) override;
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;

@@ -26,7 +26,7 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
     return name + " needs free parameters; here they are fixed, use banded_cholesky or lbfgs";
   }
   if (objective.problem().has_bounds()) return WhyNoBounds(objective, name);
-  const std::string why_no_order = WhyNoOrder(objective.problem(), name);
+  std::string why_no_order = WhyNoOrder(objective.problem(), name);
   if (!why_no_order.empty()) return why_no_order;
   return name +
          " takes one free_parameter or foot_point term without loss, terms that are affine, and "
@@ -60,7 +60,11 @@ double JointDescent::Noise(double energy) const {
   return Objective::EnergyRoundingFloor(energy, 2.0 * std::sqrt(here_->scale()));
 }
 
-bool JointDescent::SumHere(FootModelKind kind) { return here_->Sum(all_, kind, damping_); }
+Status JointDescent::SumHere(FootModelKind kind) {
+  const Eigen::VectorXd free = FreeVariablesOf(*objective(), all_);
+  if (!objective()->Allow(Evaluation::kJacobian, &free)) return Status::kStop;
+  return here_->Sum(all_, kind, damping_) ? Status::kOk : Status::kNonFinite;
+}
 
 /// For the sums at a point that is not taken yet: as if the step were as good as can be.
 double JointDescent::ParameterDamping() const { return std::max(damping_ / 3.0, kLeastDamping); }
@@ -82,12 +86,10 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
 }
 
 Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
-  const Eigen::VectorXd free = FreeVariablesOf(*objective(), all);
-  if (!objective()->Allow(Evaluation::kJacobian, &free)) return Status::kStop;
   all_ = all;
-  if (!SumHere(kind_)) return Status::kNonFinite;
-  *x = free;
-  return Status::kOk;
+  const Status status = SumHere(kind_);
+  if (status == Status::kOk) *x = FreeVariablesOf(*objective(), all_);
+  return status;
 }
 
 Status JointDescent::Project(Eigen::VectorXd* all) {
@@ -105,7 +107,8 @@ Status JointDescent::Propose() {
   decrease_ = here_->Move(all_, step_, &next_);
   if (!next_.allFinite()) return Status::kNonFinite;
   if (objective()->free_view()->projected()) return Project(&next_);
-  if (!Complete(&next_)) return Status::kNonFinite;
+  const Status status = Complete(&next_);
+  if (status != Status::kOk) return status;
   // The bits of a run that is resumed here: a sum of steps leaves the constraints by rounding.
   objective()->problem().elimination().Determine(&next_);
   return Status::kOk;
@@ -117,12 +120,11 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     if (proposed == Status::kStop) return Ended(proposed);
     if (proposed == Status::kNonFinite) {
       // Newton's Hessian need not be positive definite; Gauss and Newton's is.
-      if (kind_ == FootModelKind::kNewton && here_->kind() == FootModelKind::kNewton) {
-        if (!SumHere(FootModelKind::kTangent)) return Ended(Status::kNonFinite);
-      } else {
-        damping_ = std::max(10.0 * damping_, kFirstDamping);
-        if (!SumHere(here_->kind())) return Ended(Status::kNonFinite);
-      }
+      const bool falls_back =
+          kind_ == FootModelKind::kNewton && here_->kind() == FootModelKind::kNewton;
+      if (!falls_back) damping_ = std::max(10.0 * damping_, kFirstDamping);
+      const Status status = SumHere(falls_back ? FootModelKind::kTangent : here_->kind());
+      if (status != Status::kOk) return Ended(status);
       continue;
     }
     const Eigen::VectorXd free = FreeVariablesOf(*objective(), next_);
@@ -149,7 +151,8 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     }
     damping_ = std::max(damping_ * growth_, kLeastDamping);
     growth_ *= 2.0;
-    if (!SumHere(kind_)) return Ended(Status::kNonFinite);
+    const Status status = SumHere(kind_);
+    if (status != Status::kOk) return Ended(status);
   }
   return Outcome{StopReason::kLineSearchEnded, "no step lowers E measurably"};
 }

@@ -20,11 +20,12 @@ class JointDescent : public Stepper {
  protected:
   explicit JointDescent(FootModelKind kind) : kind_(kind) {}
   /// Called with control points and parameters after each move, which it may go on with, unless
-  /// parameters are projected: they are searched then. False: no finite number.
-  virtual bool Complete(Eigen::VectorXd* /*all*/) { return true; }
+  /// parameters are projected: they are searched then. kNonFinite: no finite number. It counts the
+  /// passes over the data that it makes.
+  virtual Status Complete(Eigen::VectorXd* /*all*/) { return Status::kOk; }
   /// Called instead at the start, which has the free variables x.
   virtual Status CompleteStart(const Eigen::VectorXd& /*x*/, Eigen::VectorXd* all) {
-    return Complete(all) ? Status::kOk : Status::kNonFinite;
+    return Complete(all);
   }
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) override;
   std::optional<Outcome> DoStep(Eigen::VectorXd* x) override;
@@ -34,7 +35,8 @@ class JointDescent : public Stepper {
   Status GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x);
 
  private:
-  bool SumHere(FootModelKind kind);
+  /// Sums the model at all_, a counted pass over the data.
+  Status SumHere(FootModelKind kind);
   double ParameterDamping() const;
   double Noise(double energy) const;
   /// Leaves the point to be tried in next_; kNonFinite where the model has no step.

@@ -1,5 +1,7 @@
 #include "solvers/varpro.h"
 
+#include "solvers/foot_projection.h"
+
 namespace batten {
 
 SolverInfo VarproSolver::ClassInfo() {
@@ -14,17 +16,19 @@ SolverInfo VarproSolver::ClassInfo() {
   return info;
 }
 
-bool VarproSolver::Complete(Eigen::VectorXd* all) {
+Status VarproSolver::Complete(Eigen::VectorXd* all) {
   const FreeView* view = objective()->free_view();
   if (view_ != view) linear_ = std::make_unique<FootModel>(*view, context()->threads());
   view_ = view;
+  const Eigen::VectorXd free = FreeVariablesOf(*objective(), *all);
+  if (!objective()->Allow(Evaluation::kJacobian, &free)) return Status::kStop;
   if (!linear_->Sum(*all, FootModelKind::kPoint, 0.0) || !linear_->FactorSingular(0.0)) {
-    return false;
+    return Status::kNonFinite;
   }
   linear_->Solve(&step_);
-  if (!step_.allFinite()) return false;
+  if (!step_.allFinite()) return Status::kNonFinite;
   all->segment(view->sites().control_point_offset, step_.size()) += step_;
-  return true;
+  return Status::kOk;
 }
 
 }  // namespace batten

@@ -17,7 +17,7 @@ class VarproSolver final : public JointDescent {
   }
 
  private:
-  bool Complete(Eigen::VectorXd* all) override;
+  Status Complete(Eigen::VectorXd* all) override;
 
   std::unique_ptr<FootModel> linear_;
   const FreeView* view_ = nullptr;  // that linear_ belongs to

@@ -134,6 +134,8 @@ void ReadReport(RowFields* fields, FitReport* report) {
   fields->Require(report->verdict.failure.empty() == (!report->audited || report->verdict.holds));
   report->audit.energy = fields->Number("audit_energy");
   report->audit.gradient_norm = fields->Number("audit_gradient_norm");
+  report->audit.covers_gradient =
+      fields->IsNull("audit_energy") || !fields->IsNull("audit_gradient_norm");
 }
 
 }  // namespace

@@ -109,9 +109,12 @@ std::string FairnessText(const CurveFairness& fairness) {
 }
 
 std::string AuditText(const FitReport& report) {
-  if (!report.audited) return "none: it covers distances without loss and constraints only";
+  if (!report.audited) return "none: it does not know all terms of this fit";
   if (!report.verdict.holds) return "FAILED: " + report.verdict.failure;
-  return "verified: E " + Short(report.audit.energy) + ", |g| " + Short(report.audit.gradient_norm);
+  const std::string verified = "verified: E " + Short(report.audit.energy);
+  if (report.audit.covers_gradient) return verified + ", |g| " + Short(report.audit.gradient_norm);
+  return verified + ", constraints missed by " + Short(report.audit.violation) +
+         "; |g| is not audited";
 }
 
 }  // namespace
@@ -158,7 +161,7 @@ bool ReachedTarget(const RunResult& run, const RunSpec& spec, const FitReport& r
   Claim claim = ClaimOf(run, spec);
   claim.minimum = true;
   claim.gradient_target = std::max(asked, run.line_search_floor);
-  if (report.audited) return Verify(claim, report.audit).holds;
+  if (report.audited && report.audit.covers_gradient) return Verify(claim, report.audit).holds;
   return run.gradient_norm <= claim.gradient_target;
 }
 

@@ -102,7 +102,9 @@ Json RulesJson() {
 
 Json ProblemsJson(const std::vector<CatalogueEntry>& entries) {
   Json list = Json::array();
+  const double nan = std::nan("");
   for (const CatalogueEntry& entry : entries) {
+    const bool fixed = entry.spec.parameter_kind == ParameterKind::kFixed;
     list.push_back({{"name", entry.name},
                     {"summary", entry.summary},
                     {"path", entry.path},
@@ -110,7 +112,8 @@ Json ProblemsJson(const std::vector<CatalogueEntry>& entries) {
                     {"degree", entry.spec.degree},
                     {"closed", entry.spec.closed},
                     {"control_points", entry.spec.control_points},
-                    {"reference_energy", NumberOrNull(entry.reference_energy)},
+                    {"reference_energy", NumberOrNull(fixed ? entry.reference_energy : nan)},
+                    {"best_known_energy", NumberOrNull(fixed ? nan : entry.reference_energy)},
                     {"citation", entry.citation}});
   }
   return list;

@@ -69,11 +69,59 @@ TEST(OrderedParameters, AreTheNearestOrderedOnes) {
   }
 }
 
-TEST(OrderedParameters, EndAPeriodAfterTheFirst) {
+TEST(OrderedParameters, PoolTheLastAndTheFirstAroundTheSeam) {
+  // The last two pool to 1.25, a quarter after the first: (0 + 2 / 4) / 3 = 1 / 6 of three.
   const OrderedParameters order(Vector({0.0, 0.4, 1.3, 1.2}), 1.0);
-  EXPECT_EQ(order.t, Vector({0.0, 0.4, 1.0, 1.0}));
+  EXPECT_LT((order.t - Vector({1.0 / 6, 0.4, 7.0 / 6, 7.0 / 6})).norm(), 4 * kEps);
   EXPECT_EQ(order.num_cut, 2);
   EXPECT_EQ(order.BlockOf(), (std::vector<int>{0, 1, 0, 0}));
+  // The first then passes the second: (0 + 0.1 + 2 / 4) / 4.
+  const OrderedParameters on(Vector({0.0, 0.1, 1.3, 1.2}), 1.0);
+  EXPECT_LT((on.t - Vector({0.15, 0.15, 1.15, 1.15})).norm(), 4 * kEps);
+  EXPECT_EQ(on.BlockOf(), (std::vector<int>{0, 0, 0, 0}));
+}
+
+TEST(OrderedParameters, StayWhereTheyAreAtTheSeam) {
+  for (const double begin : {0.0, 0.3, -17.7}) {
+    const OrderedParameters order(Vector({begin, begin + 0.4, begin + 1.0, begin + 1.0 + 4 * kEps}),
+                                  1.0);
+    EXPECT_EQ(order.t, Vector({begin, begin + 0.4, begin + 1.0, begin + 1.0}));
+    EXPECT_EQ(order.num_cut, 2);
+    EXPECT_EQ(OrderedParameters(order.t, 1.0).t, order.t);
+  }
+}
+
+/// The nearest ordered ones within a period, by cutting the circle open between every two points in
+/// turn: where what is found is in order there, too, it is they.
+Eigen::VectorXd NearestAround(const Eigen::VectorXd& s, double period) {
+  const auto m = s.size();
+  for (Eigen::Index k = 0; k < m; ++k) {
+    Eigen::VectorXd rotated(m);
+    rotated << s.tail(m - k), s.head(k).array() + period;
+    const Eigen::VectorXd found = MinMax(rotated);
+    if (found[m - 1] > found[0] + period) continue;
+    Eigen::VectorXd t(m);
+    t << found.tail(k).array() - period, found.head(m - k);
+    return t;
+  }
+  ADD_FAILURE() << "in order nowhere";
+  return s;
+}
+
+TEST(OrderedParameters, AreTheNearestOrderedOnesWithinAPeriod) {
+  std::mt19937 random(74);
+  int across = 0;
+  for (int size = 1; size <= 12; ++size) {
+    for (int k = 0; k < 50; ++k) {
+      // About in order over 0.5 to 1.5 periods.
+      Eigen::VectorXd s = 0.2 * RandomVector(size, &random);
+      s += Eigen::VectorXd::LinSpaced(size, 0.0, 0.5 + 0.02 * k);
+      const OrderedParameters order(s, 1.0);
+      EXPECT_LT((order.t - NearestAround(s, 1.0)).norm(), 64 * kEps) << size;
+      across += order.num_cut > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(across, 100);
 }
 
 TEST(OrderedParameters, HaveTheDerivativeOfDifferences) {
@@ -87,7 +135,7 @@ TEST(OrderedParameters, HaveTheDerivativeOfDifferences) {
         (2.0 * kStep);
     EXPECT_LT((order.Apply(v) - difference).norm(), 100 * kEps / kStep);
     const Eigen::VectorXd w = RandomVector(9, &random);
-    EXPECT_NEAR(order.Apply(v).dot(w), v.dot(order.ApplyTransposed(w)), 64 * kEps);
+    EXPECT_NEAR(order.Apply(v).dot(w), v.dot(order.Apply(w)), 64 * kEps);
   }
 }
 

@@ -113,7 +113,7 @@ TEST_F(BenchRunnerTest, FlagsALiar) {
 
 TEST_F(BenchRunnerTest, FlagsALiarWhereTheAuditDoesNotApply) {
   const RegisteredSolver solver("liar", &faults::Lie);
-  const auto rows = Run(R"("liar")", R"(, "terms": ["distance/loss=huber/loss_scale=0.1"])");
+  const auto rows = Run(R"("liar")", R"(, "terms": ["distance,curve_fairing/weight=1e-6"])");
   EXPECT_TRUE(rows.at(0)["verified"].is_null());
   EXPECT_THAT(rows[0]["findings"], ElementsAre("claim_fails"));
 }

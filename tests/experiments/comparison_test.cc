@@ -164,6 +164,37 @@ TEST(Compare, TakesMediansOfInterleavedRepetitions) {
   EXPECT_NEAR(row.times_cholesky, row.seconds / result.rows[1].seconds, 1e-9 * row.times_cholesky);
 }
 
+/// The third cell of the table's row of a solver: whether its claim is verified.
+std::string VerifiedCell(const std::string& fields, const std::string& solver) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "batten_compare_audit.json";
+  std::ofstream(file) << R"({"name": "audited", "data": "animals/rhino_100.csv", "spline":
+      {"degree": 3, "closed": false, "control_points": 20, "knots": "uniform"},
+      "parameters": "chord_length", )"
+                      << fields << "}";
+  const std::string text = ComparisonMarkdown(Compared(Spec(file, solver)));
+  const std::string head = "| audited | " + solver + " | ";
+  const std::size_t status = text.find(head);
+  if (status == std::string::npos) return text;
+  const std::size_t cell = text.find("| ", status + head.size()) + 2;
+  return text.substr(cell, text.find(" |", cell) - cell);
+}
+
+TEST(Compare, VerifiesLossesAndConstraints) {
+  for (const char* loss : {"huber", "cauchy", "tukey", "soft_l1"}) {
+    const std::string terms = std::string(R"("terms": ["interpolation/loss=)") + loss;
+    EXPECT_EQ(VerifiedCell(terms + R"(/loss_scale=mad"])", "irls:banded_qr"), "yes") << loss;
+    EXPECT_EQ(VerifiedCell(terms + R"(/loss_scale=0.01"])", "lbfgs"), "yes") << loss;
+  }
+  EXPECT_EQ(VerifiedCell(R"("constraints": ["ends", "natural"])", "banded_qr"), "yes");
+  EXPECT_EQ(VerifiedCell(R"("constraints": ["clamped", "point/t=0.5/x=3"])", "lbfgs"), "yes");
+  EXPECT_EQ(
+      VerifiedCell(R"("constraints": ["curvature/t=0.5/kappa=0.1"])", "augmented_lagrangian:lbfgs"),
+      "in part");
+  EXPECT_EQ(VerifiedCell(R"("terms": ["interpolation", "curve_fairing/weight=1e-6"])", "lbfgs"),
+            "-");
+}
+
 TEST(Compare, MarksAClaimThatFailsItsAudit) {
   const WithSleepingSolver registered;
   const ComparisonResult result = Compared(Spec("rhino", "sleeping"));

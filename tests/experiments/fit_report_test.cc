@@ -105,15 +105,6 @@ TEST(MeasureFit, CatchesALyingRun) {
   EXPECT_THAT(MeasureFit(*problem, run, short_spec).verdict.failure, HasSubstr("claims a minimum"));
 }
 
-TEST(MeasureFit, DoesNotAuditALoss) {
-  FitSpec spec;
-  spec.terms = {{"interpolation", {{"loss", "huber"}}, nullptr}};
-  const auto problem = MakeProblem(Zigzag(40), spec);
-  const FitReport report = MeasureFit(*problem, RunSolver(*problem, "ceres_lbfgs", {}), {});
-  EXPECT_FALSE(report.audited);
-  EXPECT_GT(report.rms, 0.0);
-}
-
 /// A wave of 60 points, open or closed, with weights; parameters are free.
 std::unique_ptr<Problem> FreeWave(int degree, bool closed, bool hold_ends) {
   DataSet data;
@@ -193,19 +184,6 @@ TEST(MeasureFit, FollowsParametersPastAnEndAsTheRunDoes) {
   const Json json = Json::parse(FitJson(*problem, run, spec, report));
   EXPECT_EQ(json["parameters"][0], 0.0);
   EXPECT_EQ(json["parameters"][30], 1.0);
-}
-
-TEST(MeasureFit, DoesNotAuditFreeParametersWithALoss) {
-  FitSpec spec;
-  spec.parameter_kind = ParameterKind::kFree;
-  spec.terms = {{"free_parameter", {{"loss", "huber"}}, nullptr}};
-  const auto problem = MakeProblem(Zigzag(40), spec);
-  RunSpec run_spec;
-  run_spec.max_iterations = 20;
-  const RunResult run = RunSolver(*problem, "lbfgs", run_spec);
-  const FitReport report = MeasureFit(*problem, run, run_spec);
-  EXPECT_FALSE(report.audited);
-  EXPECT_GT(report.rms, 0.0);
 }
 
 TEST(MeasureFit, SeesTheShapeBesideTheDataThatCount) {

@@ -186,7 +186,9 @@ void ExpectFinds(const Cubic& p, const Points& data, const Eigen::VectorXd& t,
     EXPECT_LE(std::abs(missed(found, at)), kHeld * size);
     EXPECT_LE(run.violation, kHeld * size);
     const FitReport report = MeasureFit(*problem, run, RunSpec());
-    EXPECT_FALSE(report.audited);
+    EXPECT_TRUE(report.audited && report.verdict.holds) << report.verdict.failure;
+    EXPECT_FALSE(report.audit.covers_gradient);
+    EXPECT_NEAR(report.audit.violation, run.violation, 1e-13 * size);
   }
 }
 

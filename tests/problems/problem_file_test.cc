@@ -112,6 +112,15 @@ TEST_F(ProblemFile, RefusesNumbersOutOfRange) {
             "/spline/control_points: found 18446744073709551615; allowed: 4 to 10000000");
   EXPECT_EQ(Refusal(WithSpline(R"("control_points": 4)", R"(, "reference": {"energy": -1})")),
             "/reference/energy: found -1; allowed: at least 0");
+  // With moving parameters no least energy is known, with fixed ones no other is asked for.
+  const auto with_reference = [&](const std::string& kind, const std::string& key) {
+    return Refusal(
+        WithSpline(R"("control_points": 4)",
+                   R"(, "parameter_kind": ")" + kind + R"(", "reference": {")" + key + R"(": 1})"));
+  };
+  EXPECT_THAT(with_reference("free", "energy"), HasSubstr("best_known"));
+  EXPECT_THAT(with_reference("projected", "energy"), HasSubstr("best_known"));
+  EXPECT_THAT(with_reference("fixed", "best_known"), HasSubstr("energy"));
 }
 
 TEST_F(ProblemFile, RefusesWrongTypes) {

@@ -34,7 +34,11 @@ TEST(FitCommand, HoldsConstraintsThatAreNotLinear) {
   const nlohmann::json fit = nlohmann::json::parse(ReadFile(out));
   EXPECT_LE(fit["constraint_violation"].get<double>(), 1e-10 * 20.0);
   EXPECT_EQ(fit["constraint_parameters"].size(), 1U);
-  EXPECT_TRUE(fit["audit"].is_null());
+  EXPECT_EQ(fit["audit"]["verified"], true);
+  EXPECT_EQ(fit["audit"]["covers_gradient"], false);
+  EXPECT_TRUE(fit["audit"]["gradient_norm"].is_null());
+  EXPECT_LE(fit["audit"]["constraint_violation"].get<double>(), 1e-10 * 20.0);
+  EXPECT_THAT(ended.out, HasSubstr("|g| is not audited"));
   const std::vector<std::string> rows = Lines(ReadFile(trace));
   EXPECT_THAT(rows.front(), HasSubstr(",step_norm,constraint_violation,energy_interpolation"));
   EXPECT_EQ(rows.size(), fit["iterations"].get<std::size_t>() + 2);
