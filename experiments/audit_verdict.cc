@@ -128,7 +128,7 @@ Verdict Verify(const Claim& claim, const AuditReport& report) {
                        " (allowed: " + Number(report.foot_allowed) + ")"};
   }
   if (!report.covers_gradient) return {true, ""};
-  const Verdict verdict = VerifyGradient(claim, report);
+  Verdict verdict = VerifyGradient(claim, report);
   return verdict.holds && claim.minimum ? VerifyMinimum(claim, report) : verdict;
 }
 

@@ -1,9 +1,11 @@
 #include "experiments/replay.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
+#include "experiments/comparison.h"
 #include "experiments/run_control.h"
 #include "solvers/solver_registry.h"
 
@@ -22,15 +24,20 @@ class Recorder final : public EvaluationMonitor {
 
   bool Allow(Evaluation kind, const Eigen::VectorXd* x) override {
     if (!control_->Allow(kind, x)) return false;
-    if (kind != Evaluation::kEnergy && kind != Evaluation::kGradient) {
-      if (kind == Evaluation::kJacobian) not_held_ = "Jacobians";
-      if (kind == Evaluation::kProduct) not_held_ = "Hessian products";
-      if (kind == Evaluation::kProjection) not_held_ = "projections of parameters";
-    } else if (x == nullptr) {
-      not_held_ = "evaluations at no known point";
-    } else if (tape_->points.empty() || !SameBits(tape_->points.back(), *x)) {
-      tape_->points.push_back(*x);
+    if (kind == Evaluation::kJacobian) not_held_ = "Jacobians";
+    if (kind == Evaluation::kProjection) not_held_ = "projections of parameters";
+    Tape::Request request{kind, Tape::kNoPoint};
+    if (kind == Evaluation::kEnergy || kind == Evaluation::kGradient) {
+      if (x == nullptr) {
+        not_held_ = "evaluations at no known point";
+      } else {
+        if (tape_->points.empty() || !SameBits(tape_->points.back(), *x)) {
+          tape_->points.push_back(*x);
+        }
+        request.point = tape_->points.size() - 1;
+      }
     }
+    tape_->requests.push_back(request);
     // What a tape cannot hold ends in a refusal: the rest of the run would be work for nothing.
     return not_held_.empty();
   }
@@ -42,7 +49,72 @@ class Recorder final : public EvaluationMonitor {
   std::string not_held_;
 };
 
+/// The tape's requests through an evaluator of their own: seconds of the wall.
+double Replay(const Problem& problem, const Tape& tape, const RunSpec& spec) {
+  Objective objective(&problem, nullptr, Objective::Options{spec.compile});
+  double energy = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd product;
+  const std::vector<Tape::Request>& requests = tape.requests;
+  const Eigen::VectorXd* x = &tape.points.front();
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const Tape::Request& request = requests[i];
+    if (request.point != Tape::kNoPoint) x = &tape.points[request.point];
+    if (request.kind == Evaluation::kProduct) {
+      objective.HessianTimes(*x, tape.points.front(), &product);
+    } else if (request.kind == Evaluation::kGradient) {
+      objective.Gradient(*x, &gradient);
+    } else if (i + 1 < requests.size() && requests[i + 1].kind == Evaluation::kGradient &&
+               requests[i + 1].point == request.point) {
+      objective.EnergyAndGradient(*x, &energy, &gradient);
+      ++i;
+    } else {
+      objective.Energy(*x, &energy);
+    }
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Of the largest |x| of a tape; 1 where all are zero.
+double Size(const Tape& tape) {
+  double size = 0.0;
+  for (const Eigen::VectorXd& x : tape.points) size = std::max(size, x.cwiseAbs().maxCoeff());
+  return size > 0.0 ? size : 1.0;
+}
+
 }  // namespace
+
+int Tape::Count(Evaluation kind) const {
+  return static_cast<int>(std::count_if(requests.begin(), requests.end(),
+                                        [kind](const Request& r) { return r.kind == kind; }));
+}
+
+bool MeasureSplit(const Problem& problem, const Tape& tape, const RunSpec& spec, int repetitions,
+                  TimeSplit* split, std::string* error) {
+  std::vector<double> run, evaluation, solver;
+  for (int i = 0; i <= repetitions; ++i) {
+    RunResult result;
+    if (!Run(problem, tape.run.solver, spec, &result, error)) return false;
+    if (result.outcome.reason == StopReason::kInterrupted) break;
+    const bool both_unknown = std::isnan(result.energy) && std::isnan(tape.run.energy);
+    if ((result.energy != tape.run.energy && !both_unknown) ||
+        result.iterations != tape.run.iterations) {
+      *error = tape.run.solver.ToString() + " is not repeatable: after " +
+               std::to_string(tape.run.iterations) +
+               " iterations it was at E = " + NumberText(tape.run.energy) + ", now after " +
+               std::to_string(result.iterations) + " at " + NumberText(result.energy);
+      return false;
+    }
+    const double seconds = Replay(problem, tape, spec);
+    if (i == 0) continue;
+    run.push_back(result.seconds);
+    evaluation.push_back(seconds);
+    solver.push_back(result.seconds - seconds);
+  }
+  if (!run.empty()) *split = {Median(run), Median(evaluation), Median(solver)};
+  return true;
+}
 
 bool RecordTape(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
                 Tape* tape, std::string* error) {
@@ -71,29 +143,31 @@ bool RecordTape(const Problem& problem, const NameSpec& solver_name, const RunSp
   if (what.empty() && tape->points.empty()) what = "no evaluation of E or its gradient";
   if (what.empty()) return true;
   *error = solver_name.ToString() + " makes " + what +
-           "; a tape holds evaluations of E and its gradient, as of ceres_lbfgs, and of lbfgs "
-           "where nothing is "
-           "compiled (--nocompile)";
+           "; a tape holds evaluations of E and its gradient and Hessian products";
   return false;
+}
+
+std::vector<double> Differences(const Tape& first, const Tape& second) {
+  const double size = Size(first);
+  std::vector<double> differences(std::min(first.points.size(), second.points.size()));
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    const Eigen::VectorXd step = first.points[i] - second.points[i];
+    differences[i] = step.cwiseAbs().maxCoeff() / size;
+  }
+  return differences;
 }
 
 Parting FindParting(const Tape& first, const Tape& second, double tolerance) {
   Parting parting;
   parting.tolerance = tolerance;
-  double size = 0.0;
-  for (const Eigen::VectorXd& x : first.points) size = std::max(size, x.cwiseAbs().maxCoeff());
-  if (!(size > 0.0)) size = 1.0;
-  const std::size_t count = std::min(first.points.size(), second.points.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::VectorXd& x = first.points[i];
-    const Eigen::VectorXd& y = second.points[i];
-    const Eigen::VectorXd step = x - y;
-    const double difference = step.cwiseAbs().maxCoeff() / size;
-    const bool part =
-        tolerance == 0.0 ? !SameBits(x, y) : !step.allFinite() || difference > tolerance;
-    if (!part) continue;
+  const std::vector<double> differences = Differences(first, second);
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    // Written so that NaN parts, too.
+    const bool same = tolerance == 0.0 ? SameBits(first.points[i], second.points[i])
+                                       : differences[i] <= tolerance;
+    if (same) continue;
     parting.index = i;
-    parting.difference = difference;
+    parting.difference = differences[i];
     return parting;
   }
   return parting;

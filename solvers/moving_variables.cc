@@ -35,7 +35,7 @@ std::vector<int> PlacesInFree(const LinearElimination& elimination, int num_vari
 }  // namespace
 
 std::string WhyNoWindows(const Problem& problem, const std::string& solver_name) {
-  const std::string why_no_order = WhyNoOrder(problem, solver_name);
+  std::string why_no_order = WhyNoOrder(problem, solver_name);
   if (!why_no_order.empty()) return why_no_order;
   std::vector<char> moves(static_cast<std::size_t>(problem.num_variables()), 0);
   bool is_bounded = false;

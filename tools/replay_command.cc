@@ -1,7 +1,13 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
 
+#include "experiments/atomic_file.h"
+#include "experiments/plot.h"
 #include "experiments/replay.h"
 #include "experiments/short_number.h"
 #include "problems/catalogue.h"
@@ -11,6 +17,8 @@
 
 DECLARE_string(problem);
 DECLARE_string(solver);
+DECLARE_string(out);
+DECLARE_int32(repetitions);
 DEFINE_string(against, "",
               "A second solver: where the points at which the two evaluate part. Not given: "
               "the solver against itself.");
@@ -62,9 +70,117 @@ std::string PartingText(const Problem& problem, const RunSpec& spec, const Tape&
   return text;
 }
 
-std::string TapeText(const Tape& tape) {
-  return tape.run.solver.ToString() + ": " + std::to_string(tape.points.size()) + " points, " +
-         ToString(tape.run.outcome.reason) + "\n";
+using Json = nlohmann::ordered_json;
+
+/// One side: a solver, its tape, and where its time goes.
+struct Side {
+  Tape tape;
+  TimeSplit time;
+};
+
+std::string CountsText(const Tape& tape) {
+  return std::to_string(tape.Count(Evaluation::kEnergy)) + " E, " +
+         std::to_string(tape.Count(Evaluation::kGradient)) + " g, " +
+         std::to_string(tape.Count(Evaluation::kProduct)) + " products";
+}
+
+std::string SideText(const Side& side) {
+  constexpr double kMilliseconds = 1e3;
+  const auto part = [&side](double seconds) {
+    return ShortNumber(kMilliseconds * seconds, 3) + " ms (" +
+           ShortNumber(100.0 * seconds / side.time.run, 2) + " %)";
+  };
+  return side.tape.run.solver.ToString() + ": " + std::to_string(side.tape.points.size()) +
+         " points, " + ToString(side.tape.run.outcome.reason) + "; " + CountsText(side.tape) +
+         "\n  " + ShortNumber(kMilliseconds * side.time.run, 3) + " ms, of which evaluation " +
+         part(side.time.evaluation) + ", the solver itself " + part(side.time.solver) + "\n";
+}
+
+Json SideJson(const Side& side) {
+  return {{"solver", side.tape.run.solver.ToString()},
+          {"options", side.tape.run.options},
+          {"stop", ToString(side.tape.run.outcome.reason)},
+          {"points", side.tape.points.size()},
+          {"energy_calls", side.tape.Count(Evaluation::kEnergy)},
+          {"gradient_calls", side.tape.Count(Evaluation::kGradient)},
+          {"products", side.tape.Count(Evaluation::kProduct)},
+          {"seconds", side.time.run},
+          {"evaluation_seconds", side.time.evaluation},
+          {"solver_seconds", side.time.solver}};
+}
+
+/// Where each point was asked for, and its coordinates, which read back to the same doubles.
+std::string TapeCsv(const Tape& tape) {
+  const Eigen::Index n = tape.points.front().size();
+  std::string text = "request,kind,point";
+  for (Eigen::Index k = 0; k < n; ++k) text += ",x" + std::to_string(k);
+  text += "\n";
+  std::size_t written = 0;
+  for (std::size_t i = 0; i < tape.requests.size(); ++i) {
+    const Tape::Request& request = tape.requests[i];
+    const bool product = request.kind == Evaluation::kProduct;
+    text += std::to_string(i + 1) + (product                               ? ",product,"
+                                     : request.kind == Evaluation::kEnergy ? ",E,"
+                                                                           : ",g,");
+    if (!product) text += std::to_string(request.point + 1);
+    const bool is_new = !product && request.point == written;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      text += is_new ? "," + NumberText(tape.points[request.point][k]) : ",";
+    }
+    if (is_new) ++written;
+    text += "\n";
+  }
+  return text;
+}
+
+/// Before the work: a folder that cannot be made is known at once.
+bool MakeFolder(std::string* error) {
+  std::error_code failed;
+  std::filesystem::create_directories(FLAGS_out, failed);
+  if (failed) {
+    *error = "--out: cannot make the folder " + FLAGS_out + ": " + failed.message();
+    return false;
+  }
+  return true;
+}
+
+bool WriteFiles(const Side& first, const Side& second, FileBatch* batch, std::string* not_drawn,
+                std::string* error) {
+  Json partings = Json::array();
+  for (const double tolerance : kTolerances) {
+    const Parting parting = FindParting(first.tape, second.tape, tolerance);
+    const bool part = parting.index != Parting::kNever;
+    partings.push_back({{"tolerance", tolerance},
+                        {"evaluation", part ? Json(parting.index + 1) : Json(nullptr)},
+                        {"difference", part ? Json(parting.difference) : Json(nullptr)}});
+  }
+  const Json document = {{"format", "batten.replay/1"},      {"problem", FLAGS_problem},
+                         {"repetitions", FLAGS_repetitions}, {"first", SideJson(first)},
+                         {"second", SideJson(second)},       {"partings", std::move(partings)}};
+  const std::string folder = FLAGS_out + "/";
+  if (batch->Write(folder + "replay.json", document.dump(2) + "\n", error) == nullptr ||
+      batch->Write(folder + "tape_1.csv", TapeCsv(first.tape), error) == nullptr ||
+      batch->Write(folder + "tape_2.csv", TapeCsv(second.tape), error) == nullptr) {
+    return false;
+  }
+  PlotPanel panel;
+  panel.x_label = "evaluation";
+  panel.y_label = "largest difference / largest |x|";
+  panel.log_y = true;
+  PlotSeries series;
+  series.label = second.tape.run.solver.ToString() + " from " + first.tape.run.solver.ToString();
+  series.y = Differences(first.tape, second.tape);
+  for (std::size_t i = 0; i < series.y.size(); ++i) series.x.push_back(static_cast<double>(i + 1));
+  const bool any = std::any_of(series.y.begin(), series.y.end(), [](double y) { return y > 0.0; });
+  panel.series.push_back(std::move(series));
+  const FigureResult figure = any ? DrawPlot(folder + "replay", {panel}, 1, batch)
+                                  : NoFigure(folder + "replay", "the points are the same", batch);
+  if (IsWriteError(figure)) {
+    *error = figure.message;
+    return false;
+  }
+  if (any) *not_drawn = figure.message;
+  return batch->Commit(error);
 }
 
 int RunReplay(const std::vector<std::string>& positional, CommandOutput* output) {
@@ -88,16 +204,27 @@ int RunReplay(const std::vector<std::string>& positional, CommandOutput* output)
   }
   const std::unique_ptr<Problem> problem = LoadProblem(entry, error);
   if (problem == nullptr) return kBadInput;
+  if (WasGiven("out") && !MakeFolder(error)) return kBadInput;
   const InterruptibleRun run;
   RunSpec spec = RunSpecFromFlags();
   spec.keep_trace = false;
-  Tape first, second;
-  const bool is_recorded = RecordTape(*problem, solver, spec, &first, error) &&
-                           !InterruptRequested() &&
-                           RecordTape(*problem, other, spec, &second, error);
+  Side first, second;
+  const auto measure = [&](const NameSpec& name, Side* side) {
+    return RecordTape(*problem, name, spec, &side->tape, error) && !InterruptRequested() &&
+           MeasureSplit(*problem, side->tape, spec, FLAGS_repetitions, &side->time, error);
+  };
+  const bool is_recorded = measure(solver, &first) && measure(other, &second);
   if (InterruptRequested()) return kInterruptedStatus;
   if (!is_recorded) return kBadInput;
-  output->results = TapeText(first) + TapeText(second) + PartingText(*problem, spec, first, second);
+  std::string text =
+      SideText(first) + SideText(second) + PartingText(*problem, spec, first.tape, second.tape);
+  FileBatch batch;
+  std::string not_drawn;
+  if (WasGiven("out") && !WriteFiles(first, second, &batch, &not_drawn, error)) return kBadInput;
+  output->results = std::move(text);
+  if (!WasGiven("out")) return kDone;
+  output->results += "Files: " + FLAGS_out + "/replay.json, tape_1.csv, tape_2.csv, replay.svg" +
+                     (not_drawn.empty() ? "" : " (" + not_drawn + ")") + "\n";
   return kDone;
 }
 
@@ -106,16 +233,24 @@ int RunReplay(const std::vector<std::string>& positional, CommandOutput* output)
 Command ReplayCommand() {
   Command command;
   command.name = "replay";
-  command.summary = "finds the first evaluation where two solvers part";
+  command.summary = "splits a solver's time, and finds where two solvers part";
   command.details = {
-      "Runs both solvers on the problem, records the points at which each asks for E or its "
-      "gradient, and tells where these are first not the same, bit for bit and by more than "
-      "1e-15, 1e-12 and 1e-8 of the largest |x|. E and |g| at the two points are evaluated "
-      "afterwards, scaled as inside. Without --against the solver is run twice: one that parts "
-      "from itself is not repeatable.",
-      "Solvers that ask for more than E and its gradient are refused, with what they ask for."};
+      "Runs both solvers on the problem and records of each a tape: every E, gradient and Hessian "
+      "product it asks for, in order, with the points. The tape is then replayed without the "
+      "solver: "
+      "what a run takes longer than that is the solver's own work. Medians of --repetitions runs "
+      "and "
+      "replays in turn.",
+      "Then tells where the points of the two tapes are first not the same, bit for bit and by "
+      "more "
+      "than 1e-15, 1e-12 and 1e-8 of the largest |x|. E and |g| at the two points are evaluated "
+      "afterwards, scaled as inside. Without --against the solver is held against a second run of "
+      "itself: one that parts is not repeatable.",
+      "Solvers that ask for Jacobians or projections, or for neither E nor a gradient, are "
+      "refused, "
+      "with what they ask for."};
   command.examples = {
-      "batten replay --problem=rhino --solver=lbfgs --against=ceres_lbfgs --nocompile",
+      "batten replay --problem=rhino --solver=lbfgs --against=ceres_lbfgs --out=out/replay",
       "batten replay --problem=rhino --solver=ceres_lbfgs --against=ceres_lbfgs/form=problem "
       "--nocompile"};
   command.flags = {
@@ -123,6 +258,12 @@ Command ReplayCommand() {
                "A problem of the catalogue (batten list problems) or a problem file."),
       TextFlag("solver", "SOLVER", "a solver of batten list solvers, with options or without"),
       TextFlag("against", "SOLVER", "a solver of batten list solvers, with options or without")};
+  FlagInfo repetitions = NumberFlag("repetitions", "N", 1.0, 1000.0);
+  repetitions.help = "Runs and replays of each solver, in turn; times are medians.";
+  command.flags.push_back(std::move(repetitions));
+  command.flags.push_back(TextFlag("out", "FOLDER", "a folder",
+                                   "Folder for replay.json, the tapes as CSV and a figure, created "
+                                   "if missing. Not given: nothing is written."));
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
   command.run = &RunReplay;
   return command;

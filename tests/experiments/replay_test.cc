@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <thread>
+
 #include "tests/experiments/faulty_solvers.h"
 #include "tests/experiments/outlines.h"
 
@@ -89,6 +92,58 @@ TEST(Replay, BothFormsOfCeresEvaluateAtTheSamePointsUncompiled) {
   EXPECT_GT(objective.points.size(), 10U);
   EXPECT_EQ(objective.points.size(), native.points.size());
   EXPECT_EQ(FindParting(objective, native, 0.0).index, Parting::kNever);
+}
+
+/// Waits for `seconds` at each of `steps` evaluations, which are the tape's only requests.
+FaultySolver::Method Slow(int steps, double seconds) {
+  return [=](Objective* objective, RunContext* context, Eigen::VectorXd* x) -> Outcome {
+    if (context->Iterate(*x) != Status::kOk) return {context->stop_reason(), ""};
+    for (int i = 0; i < steps; ++i) {
+      double energy = 0.0;
+      std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+      if (objective->Energy(*x, &energy) != Status::kOk) return {context->stop_reason(), ""};
+    }
+    return {StopReason::kNativeStop, ""};
+  };
+}
+
+TEST(Replay, TimeThatASolverSpendsItselfIsItsOwn) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  const RegisteredSolver slow("slow", Slow(5, 0.01));
+  const Tape tape = Record(*problem, "slow");
+  EXPECT_EQ(tape.Count(Evaluation::kEnergy), 5);
+  TimeSplit split;
+  std::string error;
+  ASSERT_TRUE(MeasureSplit(*problem, tape, {}, 3, &split, &error)) << error;
+  // Sleeping takes at least what was asked for; an evaluation here takes microseconds.
+  EXPECT_GE(split.solver, 0.05 - split.evaluation);
+  EXPECT_GE(split.run, 0.05);
+  EXPECT_LT(split.evaluation, split.solver);
+}
+
+TEST(Replay, ProductsAndGradientsOfAQuadraticAreOnTheTape) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  const Tape tape = Record(*problem, "lbfgs");
+  EXPECT_EQ(tape.Count(Evaluation::kGradient), tape.run.counts.gradient_calls);
+  EXPECT_EQ(tape.Count(Evaluation::kProduct), tape.run.counts.products);
+  EXPECT_GT(tape.Count(Evaluation::kProduct), 10);
+  EXPECT_EQ(tape.requests.size(),
+            static_cast<std::size_t>(tape.run.counts.gradient_calls + tape.run.counts.products));
+}
+
+TEST(Replay, SplitRefusesWhatIsNotRepeatable) {
+  const auto problem = LoadCatalogueProblem("rhino");
+  int runs = 0;
+  const RegisteredSolver fickle(
+      "fickle", [&runs](Objective* objective, RunContext* context, Eigen::VectorXd* x) {
+        *x = x->array() + runs++;
+        return Walk(2, -1, 0.0)(objective, context, x);
+      });
+  const Tape tape = Record(*problem, "fickle");
+  TimeSplit split;
+  std::string error;
+  EXPECT_FALSE(MeasureSplit(*problem, tape, {}, 1, &split, &error));
+  EXPECT_THAT(error, HasSubstr("fickle is not repeatable"));
 }
 
 TEST(Replay, RefusesWhatATapeDoesNotHold) {
