@@ -61,6 +61,7 @@ class Collector {
     instance.label = label;
     instance.problem = TextAt(row, "problem");
     instance.terms = TextAt(row, "terms");
+    instance.kind = TextAt(row, "parameter_kind");
     const auto found = data_.instances.find(TextAt(row, "instance"));
     const nlohmann::json measured = found == data_.instances.end() ? nullptr : found->second;
     instance.num_variables = NumberAt(measured, "num_variables");

@@ -27,6 +27,7 @@ struct BenchInstance {
   std::string label;  // "rhino | own | start 2"
   std::string problem;
   std::string terms;
+  std::string kind;  ///< Of its parameters: "fixed", "free", "projected".
   double num_variables = 0.0;
   double unit_seconds = 0.0;  // NaN: not known
   double start_energy = 0.0;

@@ -1,10 +1,12 @@
 #include "experiments/bench_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cost_functions/options.h"
 #include "experiments/comparison.h"
+#include "experiments/short_number.h"
 #include "experiments/table_text.h"
 
 namespace batten {
@@ -61,22 +63,66 @@ int CountSolved(const CostTable& costs, std::size_t solver) {
       [solver](const std::vector<double>& row) { return std::isfinite(row[solver]); }));
 }
 
-int CountBestBasin(const BenchResults& results, std::size_t solver, int* of) {
-  int best = 0;
-  *of = 0;
+/// What one solver did on the instances of one kind of parameters.
+struct KindCounts {
+  bool applies = false;  // to one at least
+  int best_basin = 0, of_basins = 0;
+};
+
+KindCounts CountKind(const BenchResults& results, const std::string& kind, std::size_t solver) {
+  KindCounts counts;
   for (const BenchRun& run : results.runs) {
-    if (run.solver != solver || !results.instances[run.instance].has_basins) continue;
-    ++*of;
-    best += run.ran && run.basin == 0 ? 1 : 0;
+    const BenchInstance& instance = results.instances[run.instance];
+    if (run.solver != solver || instance.kind != kind) continue;
+    counts.applies = counts.applies || TextAt(*run.first, "stop") != "skipped";
+    if (!instance.has_basins) continue;
+    ++counts.of_basins;
+    counts.best_basin += run.ran && run.basin == 0 ? 1 : 0;
   }
-  return best;
+  return counts;
+}
+
+/// The rows of CostsOf() that are of one kind.
+CostTable CostsOfKind(const BenchResults& results, std::size_t target, BenchCost cost,
+                      const std::string& kind) {
+  std::vector<std::size_t> rows_of;
+  const CostTable all = CostsOf(results, target, cost, &rows_of);
+  CostTable costs;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    if (results.instances[rows_of[r]].kind == kind) costs.push_back(all[r]);
+  }
+  return costs;
+}
+
+std::vector<std::string> Kinds(const BenchResults& results) {
+  std::vector<std::string> kinds;
+  for (const BenchInstance& instance : results.instances) {
+    if (std::find(kinds.begin(), kinds.end(), instance.kind) == kinds.end()) {
+      kinds.push_back(instance.kind);
+    }
+  }
+  return kinds;
+}
+
+/// For people: numbers that are not whole to four digits.
+CsvTable Rounded(const CsvTable& table) {
+  CsvTable rounded = table;
+  for (std::size_t row = 0; row < table.num_rows(); ++row) {
+    for (const std::string& column : table.columns()) {
+      const double value = table.Number(row, column);
+      if (!std::isfinite(value) || value == std::floor(value)) continue;
+      rounded.Set(row, column, ShortNumber(value, 4));
+    }
+  }
+  return rounded;
 }
 
 bool Write(const CsvTable& table, const std::string& stem, const std::string& caption,
            FileBatch* batch, std::string* error) {
+  const CsvTable rounded = Rounded(table);
   return batch->Write(stem + ".csv", table.ToCsv(), error) != nullptr &&
-         batch->Write(stem + ".md", TableMarkdown(table), error) != nullptr &&
-         batch->Write(stem + ".tex", TableLatex(table, caption), error) != nullptr;
+         batch->Write(stem + ".md", TableMarkdown(rounded), error) != nullptr &&
+         batch->Write(stem + ".tex", TableLatex(rounded, caption), error) != nullptr;
 }
 
 }  // namespace
@@ -123,23 +169,31 @@ CsvTable RunTable(const BenchResults& results) {
 }
 
 CsvTable SolverTable(const BenchResults& results) {
-  CsvTable table({"target", "solver", "instances", "solved", "best_basin", "of_basins",
+  CsvTable table({"target", "kind", "solver", "instances", "solved", "best_basin", "of_basins",
                   "evaluations", "work_units", "seconds"});
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
-    const CostTable counts = CostsOf(results, t, BenchCost::kEvaluations, nullptr);
-    for (std::size_t s = 0; s < results.solvers.size(); ++s) {
-      int of_basins = 0;
-      const int best = CountBestBasin(results, s, &of_basins);
-      std::vector<std::string> cells = {results.targets[t].label,
-                                        WithoutCommas(results.solvers[s]),
-                                        std::to_string(counts.size()),
-                                        std::to_string(CountSolved(counts, s)),
-                                        of_basins > 0 ? std::to_string(best) : "",
-                                        of_basins > 0 ? std::to_string(of_basins) : ""};
-      for (const BenchCost cost : kBenchCosts) {
-        cells.push_back(Cell(ChargedMean(CostsOf(results, t, cost, nullptr), s, Shift(cost))));
+    for (const std::string& kind : Kinds(results)) {
+      std::array<CostTable, kBenchCosts.size()> costs;
+      for (std::size_t k = 0; k < costs.size(); ++k) {
+        costs[k] = CostsOfKind(results, t, kBenchCosts[k], kind);
       }
-      table.AddRow(std::move(cells));
+      if (costs[0].empty()) continue;
+      for (std::size_t s = 0; s < results.solvers.size(); ++s) {
+        const KindCounts counts = CountKind(results, kind, s);
+        if (!counts.applies) continue;
+        const bool basins = counts.of_basins > 0;
+        std::vector<std::string> cells = {results.targets[t].label,
+                                          kind,
+                                          WithoutCommas(results.solvers[s]),
+                                          std::to_string(costs[0].size()),
+                                          std::to_string(CountSolved(costs[0], s)),
+                                          basins ? std::to_string(counts.best_basin) : "",
+                                          basins ? std::to_string(counts.of_basins) : ""};
+        for (std::size_t k = 0; k < costs.size(); ++k) {
+          cells.push_back(Cell(ChargedMean(costs[k], s, Shift(kBenchCosts[k]))));
+        }
+        table.AddRow(std::move(cells));
+      }
     }
   }
   return table;
@@ -188,8 +242,8 @@ bool WriteBenchTables(const BenchResults& results, const std::string& folder, Fi
                       std::to_string(results.num_cells) +
                       " cells are finished. A solver that does not reach a target, or does not "
                       "apply, is charged 10 times the largest cost of its instance in the means of "
-                      "solvers.md; instances on "
-                      "which nobody reaches it are left out of them.\n\n";
+                      "solvers.md; instances on which nobody reaches it are left out of them. "
+                      "Solvers that apply to no instance of a kind have no row there.\n\n";
   for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
   return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&
          Write(SolverTable(results), folder + "/solvers", results.suite + ": by target and solver",

@@ -16,7 +16,8 @@ namespace batten {
 
 /// A row per instance, solver and seed: what came of it.
 CsvTable RunTable(const BenchResults& results);
-/// A row per target and solver: instances solved, how often the best basin was found, shifted
+/// A row per target, kind of parameters and solver that applies to some instance of that kind:
+/// instances solved, how often the best basin was found, shifted
 /// geometric means of each cost (shift 10; of seconds 1 ms) with failures charged 10 times the
 /// largest cost of their instance.
 CsvTable SolverTable(const BenchResults& results);
@@ -24,7 +25,8 @@ CsvTable SolverTable(const BenchResults& results);
 /// needs less how often, and both profiles at the ratios 1, 2 and 10.
 CsvTable PairTable(const BenchResults& results);
 
-/// Adds table, solvers and pairs (.csv, .md, .tex) and notes.md to `batch`.
+/// Adds table, solvers and pairs (.csv with all digits, .md and .tex with four) and notes.md to
+/// `batch`.
 bool WriteBenchTables(const BenchResults& results, const std::string& folder, FileBatch* batch,
                       std::string* error);
 

@@ -6,29 +6,36 @@
 namespace batten {
 namespace {
 
-/// For the terminal: the solvers at the strictest gap, most solved first as they stand.
+void AddRows(std::string head, const CsvTable& rows, std::string* text) {
+  std::size_t width = head.size();
+  for (std::size_t row = 0; row < rows.num_rows(); ++row) {
+    width = std::max(width, rows.Text(row, "solver").size());
+  }
+  head.resize(width, ' ');
+  *text += "\n" + head + "   solved  evaluations   work units     seconds\n";
+  for (std::size_t row = 0; row < rows.num_rows(); ++row) {
+    std::string line = rows.Text(row, "solver");
+    line.resize(width, ' ');
+    const auto Add = [&line](const std::string& cell, std::size_t columns) {
+      line += std::string(columns > cell.size() ? columns - cell.size() : 1, ' ') + cell;
+    };
+    Add(rows.Text(row, "solved") + "/" + rows.Text(row, "instances"), 9);
+    for (const char* column : {"evaluations", "work_units", "seconds"}) {
+      Add(ShortNumber(rows.Number(row, column), 3), column[0] == 's' ? 12 : 13);
+    }
+    *text += line + "\n";
+  }
+}
+
+/// For the terminal: per target and kind of parameters, the solvers as they stand.
 std::string Summary(const BenchResults& results) {
   const CsvTable table = SolverTable(results);
   std::string text = results.suite + ": " + std::to_string(results.num_finished) + " of " +
                      std::to_string(results.num_cells) + " cells\n";
   for (const BenchTarget& target : results.targets) {
-    const CsvTable rows = table.Where("target", target.label);
-    std::size_t width = 6;
-    for (const std::string& solver : results.solvers) width = std::max(width, solver.size());
-    std::string head = target.label;
-    head.resize(std::max(head.size(), width), ' ');
-    text += "\n" + head + "   solved  evaluations   work units     seconds\n";
-    for (std::size_t row = 0; row < rows.num_rows(); ++row) {
-      std::string line = rows.Text(row, "solver");
-      line.resize(head.size(), ' ');
-      const auto Add = [&line](const std::string& cell, std::size_t columns) {
-        line += std::string(columns > cell.size() ? columns - cell.size() : 1, ' ') + cell;
-      };
-      Add(rows.Text(row, "solved") + "/" + rows.Text(row, "instances"), 9);
-      for (const char* column : {"evaluations", "work_units", "seconds"}) {
-        Add(ShortNumber(rows.Number(row, column), 3), column[0] == 's' ? 12 : 13);
-      }
-      text += line + "\n";
+    const CsvTable of_target = table.Where("target", target.label);
+    for (const std::string& kind : of_target.Distinct("kind")) {
+      AddRows(target.label + ", " + kind, of_target.Where("kind", kind), &text);
     }
   }
   return text;
