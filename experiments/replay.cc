@@ -6,8 +6,7 @@
 #include <cstring>
 
 #include "experiments/comparison.h"
-#include "experiments/run_control.h"
-#include "solvers/solver_registry.h"
+#include "problems/objective.h"
 
 namespace batten {
 namespace {
@@ -17,37 +16,23 @@ bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
-/// Stands before run control and writes down what it lets through.
-class Recorder final : public EvaluationMonitor {
- public:
-  Recorder(EvaluationMonitor* control, Tape* tape) : control_(control), tape_(tape) {}
-
-  bool Allow(Evaluation kind, const Eigen::VectorXd* x) override {
-    if (!control_->Allow(kind, x)) return false;
-    if (kind == Evaluation::kJacobian) not_held_ = "Jacobians";
-    if (kind == Evaluation::kProjection) not_held_ = "projections of parameters";
-    Tape::Request request{kind, Tape::kNoPoint};
-    if (kind == Evaluation::kEnergy || kind == Evaluation::kGradient) {
-      if (x == nullptr) {
-        not_held_ = "evaluations at no known point";
-      } else {
-        if (tape_->points.empty() || !SameBits(tape_->points.back(), *x)) {
-          tape_->points.push_back(*x);
-        }
-        request.point = tape_->points.size() - 1;
-      }
+/// Writes down what a solver asks for. False for what a tape cannot hold, with its name: the run
+/// ends in a refusal, and the rest of it would be work for nothing.
+bool Record(Evaluation kind, const Eigen::VectorXd* x, Tape* tape, std::string* not_held) {
+  if (kind == Evaluation::kJacobian) *not_held = "Jacobians";
+  if (kind == Evaluation::kProjection) *not_held = "projections of parameters";
+  Tape::Request request{kind, Tape::kNoPoint};
+  if (kind == Evaluation::kEnergy || kind == Evaluation::kGradient) {
+    if (x == nullptr) {
+      *not_held = "evaluations at no known point";
+    } else {
+      if (tape->points.empty() || !SameBits(tape->points.back(), *x)) tape->points.push_back(*x);
+      request.point = tape->points.size() - 1;
     }
-    tape_->requests.push_back(request);
-    // What a tape cannot hold ends in a refusal: the rest of the run would be work for nothing.
-    return not_held_.empty();
   }
-  const std::string& not_held() const { return not_held_; }
-
- private:
-  EvaluationMonitor* control_;
-  Tape* tape_;
-  std::string not_held_;
-};
+  tape->requests.push_back(request);
+  return not_held->empty();
+}
 
 /// The tape's requests through an evaluator of their own: seconds of the wall.
 double Replay(const Problem& problem, const Tape& tape, const RunSpec& spec) {
@@ -116,33 +101,21 @@ bool MeasureSplit(const Problem& problem, const Tape& tape, const RunSpec& spec,
   return true;
 }
 
-bool RecordTape(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
-                Tape* tape, std::string* error) {
+bool RecordTape(const Problem& problem, const NameSpec& solver, const RunSpec& spec, Tape* tape,
+                std::string* error) {
   *tape = Tape();
-  RunResult& result = tape->run;
-  result.solver = solver_name;
-  OptionValues options;
-  const std::unique_ptr<Solver> solver =
-      SolverRegistry::Global().Make(solver_name, &options, error);
-  if (solver == nullptr) return false;
-  result.options = options.ToText();
-  RunControl control(problem, spec, solver->Info().native_rule, &result);
-  Recorder recorder(&control, tape);
-  Objective objective(&problem, &recorder, Objective::Options{spec.compile});
-  result.skipped = solver->WhyUnsupported(objective);
-  if (!result.skipped.empty()) {
-    *error = solver_name.ToString() + " does not apply: " + result.skipped;
+  std::string what;
+  const EvaluationWatch record = [&](Evaluation kind, const Eigen::VectorXd* x) {
+    return Record(kind, x, tape, &what);
+  };
+  if (!Run(problem, solver, spec, &tape->run, error, record)) return false;
+  if (!tape->run.skipped.empty()) {
+    *error = solver.ToString() + " does not apply: " + tape->run.skipped;
     return false;
   }
-  Eigen::VectorXd x =
-      spec.start.size() > 0 ? problem.elimination().FreeVariables(spec.start) : objective.start();
-  control.Begin();
-  result.outcome = solver->Minimize(&objective, &control, &x);
-  control.Finish(x);
-  std::string what = recorder.not_held();
   if (what.empty() && tape->points.empty()) what = "no evaluation of E or its gradient";
   if (what.empty()) return true;
-  *error = solver_name.ToString() + " makes " + what +
+  *error = solver.ToString() + " makes " + what +
            "; a tape holds evaluations of E and its gradient and Hessian products";
   return false;
 }

@@ -31,6 +31,20 @@ double ObservedRate(const RunResult& result) {
   return std::pow(ratio, 1.0 / (last - first));
 }
 
+/// Stands before run control and tells of what it lets through.
+class Watched final : public EvaluationMonitor {
+ public:
+  Watched(EvaluationMonitor* control, const EvaluationWatch& watch)
+      : control_(control), watch_(watch) {}
+  bool Allow(Evaluation kind, const Eigen::VectorXd* x) override {
+    return control_->Allow(kind, x) && watch_(kind, x);
+  }
+
+ private:
+  EvaluationMonitor* control_;
+  const EvaluationWatch& watch_;
+};
+
 }  // namespace
 
 const char* ToString(Mode mode) { return mode == Mode::kRace ? "race" : "native"; }
@@ -45,7 +59,7 @@ void RequestInterrupt() { interrupt_requested = true; }
 bool InterruptRequested() { return interrupt_requested; }
 
 bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
-         RunResult* result, std::string* error) {
+         RunResult* result, std::string* error, const EvaluationWatch& watch) {
   *result = RunResult();
   result->solver = solver_name;
   OptionValues options;
@@ -55,8 +69,10 @@ bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spe
   result->options = options.ToText();
 
   RunControl control(problem, spec, solver->Info().native_rule, result);
+  Watched watched(&control, watch);
+  EvaluationMonitor* const monitor = watch ? static_cast<EvaluationMonitor*>(&watched) : &control;
   // Made before the clock starts: nothing in it is evaluated or compiled before the solver asks.
-  Objective objective(&problem, &control, Objective::Options{spec.compile});
+  Objective objective(&problem, monitor, Objective::Options{spec.compile});
   result->skipped = solver->WhyUnsupported(objective);
   if (!result->skipped.empty()) return true;
   Eigen::VectorXd x =

@@ -9,6 +9,7 @@
 
 #include "cost_functions/options.h"
 #include "experiments/trace.h"
+#include "problems/evaluation_monitor.h"
 #include "problems/problem.h"
 #include "solvers/solver.h"
 
@@ -78,10 +79,15 @@ struct RunResult {
   std::vector<Iterate> iterates;
 };
 
+/// Told of each evaluation that run control has allowed, as EvaluationMonitor is. False: it is not
+/// done, and the solver is to end.
+using EvaluationWatch = std::function<bool(Evaluation kind, const Eigen::VectorXd* x)>;
+
 /// Runs one solver from the problem's start under run control. False with one sentence in `error`
 /// for an unknown solver or option; a solver that does not apply is a result with `skipped`.
+/// `watch`, if there is one, is on the solver's clock.
 bool Run(const Problem& problem, const NameSpec& solver, const RunSpec& spec, RunResult* result,
-         std::string* error);
+         std::string* error, const EvaluationWatch& watch = nullptr);
 
 /// From the interrupt handler: every run ends at its next evaluation with kInterrupted.
 void RequestInterrupt();

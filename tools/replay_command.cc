@@ -1,10 +1,7 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "experiments/atomic_file.h"
 #include "experiments/plot.h"
@@ -45,19 +42,27 @@ std::string ValueText(const std::string& name, const ValueAtPoint& value) {
          ", |g| = " + ShortNumber(value.gradient_norm, 3);
 }
 
+/// From the first difference in bits to the coarsest tolerance.
+std::vector<Parting> FindPartings(const Tape& first, const Tape& second) {
+  std::vector<Parting> partings;
+  for (const double tolerance : kTolerances) {
+    partings.push_back(FindParting(first, second, tolerance));
+  }
+  return partings;
+}
+
 std::string PartingText(const Problem& problem, const RunSpec& spec, const Tape& first,
-                        const Tape& second) {
+                        const Tape& second, const std::vector<Parting>& partings) {
   const std::size_t shorter = std::min(first.points.size(), second.points.size());
   const bool is_equal_length = first.points.size() == second.points.size();
   std::string text;
-  for (const double tolerance : kTolerances) {
-    const Parting parting = FindParting(first, second, tolerance);
+  for (const Parting& parting : partings) {
     const std::string measure =
-        tolerance == 0.0 ? "bit for bit" : "to " + ShortNumber(tolerance, 1);
+        parting.tolerance == 0.0 ? "bit for bit" : "to " + ShortNumber(parting.tolerance, 1);
     if (parting.index == Parting::kNever) {
       text += (is_equal_length ? "the same " : "the same first ") + std::to_string(shorter) +
               " points, " + measure + "\n";
-      if (tolerance == 0.0) return text;
+      if (parting.tolerance == 0.0) return text;
       continue;
     }
     const Eigen::VectorXd& x = first.points[parting.index];
@@ -133,30 +138,22 @@ std::string TapeCsv(const Tape& tape) {
   return text;
 }
 
-/// Before the work: a folder that cannot be made is known at once.
-bool MakeFolder(std::string* error) {
-  std::error_code failed;
-  std::filesystem::create_directories(FLAGS_out, failed);
-  if (failed) {
-    *error = "--out: cannot make the folder " + FLAGS_out + ": " + failed.message();
-    return false;
+Json PartingsJson(const std::vector<Parting>& partings) {
+  Json list = Json::array();
+  for (const Parting& parting : partings) {
+    const bool part = parting.index != Parting::kNever;
+    list.push_back({{"tolerance", parting.tolerance},
+                    {"evaluation", part ? Json(parting.index + 1) : Json(nullptr)},
+                    {"difference", part ? Json(parting.difference) : Json(nullptr)}});
   }
-  return true;
+  return list;
 }
 
-bool WriteFiles(const Side& first, const Side& second, FileBatch* batch, std::string* not_drawn,
-                std::string* error) {
-  Json partings = Json::array();
-  for (const double tolerance : kTolerances) {
-    const Parting parting = FindParting(first.tape, second.tape, tolerance);
-    const bool part = parting.index != Parting::kNever;
-    partings.push_back({{"tolerance", tolerance},
-                        {"evaluation", part ? Json(parting.index + 1) : Json(nullptr)},
-                        {"difference", part ? Json(parting.difference) : Json(nullptr)}});
-  }
+bool WriteFiles(const Side& first, const Side& second, const std::vector<Parting>& partings,
+                FileBatch* batch, std::string* not_drawn, std::string* error) {
   const Json document = {{"format", "batten.replay/1"},      {"problem", FLAGS_problem},
                          {"repetitions", FLAGS_repetitions}, {"first", SideJson(first)},
-                         {"second", SideJson(second)},       {"partings", std::move(partings)}};
+                         {"second", SideJson(second)},       {"partings", PartingsJson(partings)}};
   const std::string folder = FLAGS_out + "/";
   if (batch->Write(folder + "replay.json", document.dump(2) + "\n", error) == nullptr ||
       batch->Write(folder + "tape_1.csv", TapeCsv(first.tape), error) == nullptr ||
@@ -204,7 +201,7 @@ int RunReplay(const std::vector<std::string>& positional, CommandOutput* output)
   }
   const std::unique_ptr<Problem> problem = LoadProblem(entry, error);
   if (problem == nullptr) return kBadInput;
-  if (WasGiven("out") && !MakeFolder(error)) return kBadInput;
+  if (WasGiven("out") && !CreateDirectories(FLAGS_out, error)) return kBadInput;
   const InterruptibleRun run;
   RunSpec spec = RunSpecFromFlags();
   spec.keep_trace = false;
@@ -216,11 +213,14 @@ int RunReplay(const std::vector<std::string>& positional, CommandOutput* output)
   const bool is_recorded = measure(solver, &first) && measure(other, &second);
   if (InterruptRequested()) return kInterruptedStatus;
   if (!is_recorded) return kBadInput;
-  std::string text =
-      SideText(first) + SideText(second) + PartingText(*problem, spec, first.tape, second.tape);
+  const std::vector<Parting> partings = FindPartings(first.tape, second.tape);
+  std::string text = SideText(first) + SideText(second) +
+                     PartingText(*problem, spec, first.tape, second.tape, partings);
   FileBatch batch;
   std::string not_drawn;
-  if (WasGiven("out") && !WriteFiles(first, second, &batch, &not_drawn, error)) return kBadInput;
+  if (WasGiven("out") && !WriteFiles(first, second, partings, &batch, &not_drawn, error)) {
+    return kBadInput;
+  }
   output->results = std::move(text);
   if (!WasGiven("out")) return kDone;
   output->results += "Files: " + FLAGS_out + "/replay.json, tape_1.csv, tape_2.csv, replay.svg" +
@@ -237,18 +237,14 @@ Command ReplayCommand() {
   command.details = {
       "Runs both solvers on the problem and records of each a tape: every E, gradient and Hessian "
       "product it asks for, in order, with the points. The tape is then replayed without the "
-      "solver: "
-      "what a run takes longer than that is the solver's own work. Medians of --repetitions runs "
-      "and "
-      "replays in turn.",
+      "solver: what a run takes longer than that is the solver's own work. Medians of "
+      "--repetitions runs and replays in turn.",
       "Then tells where the points of the two tapes are first not the same, bit for bit and by "
-      "more "
-      "than 1e-15, 1e-12 and 1e-8 of the largest |x|. E and |g| at the two points are evaluated "
-      "afterwards, scaled as inside. Without --against the solver is held against a second run of "
-      "itself: one that parts is not repeatable.",
+      "more than 1e-15, 1e-12 and 1e-8 of the largest |x|. E and |g| at the two points are "
+      "evaluated afterwards, scaled as inside. Without --against the solver is held against a "
+      "second run of itself: one that parts is not repeatable.",
       "Solvers that ask for Jacobians or projections, or for neither E nor a gradient, are "
-      "refused, "
-      "with what they ask for."};
+      "refused, with what they ask for."};
   command.examples = {
       "batten replay --problem=rhino --solver=lbfgs --against=ceres_lbfgs --out=out/replay",
       "batten replay --problem=rhino --solver=ceres_lbfgs --against=ceres_lbfgs/form=problem "
