@@ -27,7 +27,8 @@ HessianBand::HessianBand(const Problem& problem)
       basis_(problem.curve_fit()->basis()),
       dimension_(problem.curve_fit()->dimension()),
       reach_(LargestReach()),
-      band_(BandShape(basis_, dimension_, reach_)) {
+      shape_(BandShape(basis_, dimension_, reach_)),
+      band_(shape_) {
   MakeColours();
 }
 
@@ -66,8 +67,22 @@ void HessianBand::MakeColours() {
   }
 }
 
-bool HessianBand::Sum(Objective* objective, const Eigen::VectorXd& all, Status* status) {
+/// From the rows at and before it: row i's entry k stands for column i + k.
+void HessianBand::SetColumn(int j, int c, const Eigen::VectorXd& product) {
   const int n = basis_.num_control_points(), d = dimension_, width = band_.width();
+  for (int back = 0; back <= reach_; ++back) {
+    const int i = j - back >= 0 || !band_.cyclic() ? j - back : j - back + n;
+    if (i < 0) break;
+    for (int e = 0; e < d; ++e) {
+      const int row = i * d + e;
+      const int k = back * d + c - e;
+      if (k >= 0) band_.band()[static_cast<std::size_t>(row) * width + k] = product[row];
+    }
+  }
+}
+
+bool HessianBand::Sum(Objective* objective, const Eigen::VectorXd& all, Status* status) {
+  const int n = basis_.num_control_points(), d = dimension_;
   Eigen::VectorXd direction(all.size()), product(all.size());
   std::fill(band_.band().begin(), band_.band().end(), 0.0);
   for (int colour = 0; colour < num_colours_; ++colour) {
@@ -84,18 +99,8 @@ bool HessianBand::Sum(Objective* objective, const Eigen::VectorXd& all, Status* 
       }
       if (*status == Status::kOk && !product.allFinite()) *status = Status::kNonFinite;
       if (*status != Status::kOk) return false;
-      // Column (j, c) from the rows at and before it: row i's entry k stands for column i + k.
       for (int j = 0; j < n; ++j) {
-        if (colours_[static_cast<std::size_t>(j)] != colour) continue;
-        for (int back = 0; back <= reach_; ++back) {
-          const int i = j - back >= 0 || !band_.cyclic() ? j - back : j - back + n;
-          if (i < 0) break;
-          for (int e = 0; e < d; ++e) {
-            const int k = back * d + c - e;
-            if (k >= 0)
-              band_.band()[static_cast<std::size_t>(i * d + e) * width + k] = product[i * d + e];
-          }
-        }
+        if (colours_[static_cast<std::size_t>(j)] == colour) SetColumn(j, c, product);
       }
     }
   }
@@ -121,12 +126,7 @@ std::optional<Outcome> ExactNewton::DoStart(Eigen::VectorXd* x) {
   hessian_.emplace(problem);
   free_band_.reset();
   if (!problem.elimination().trivial()) {
-    RowShape shape;
-    shape.num_columns = hessian_->band().size();
-    shape.width = hessian_->band().width();
-    shape.dimension = 1;
-    shape.cyclic = hessian_->band().cyclic();
-    free_band_.emplace(shape, hessian_->dimension(), &problem.elimination().z());
+    free_band_.emplace(hessian_->shape(), hessian_->dimension(), &problem.elimination().z());
   }
   damping_ = 0.0;
   const Status status = objective()->EnergyAndGradient(*x, &energy_, &gradient_);

@@ -23,12 +23,15 @@ class HessianBand {
   bool Sum(Objective* objective, const Eigen::VectorXd& all, Status* status);
   const NormalBand& band() const { return band_; }
   NormalBand& band() { return band_; }
+  const RowShape& shape() const { return shape_; }  ///< Of band().
   int num_colours() const { return num_colours_; }
   int dimension() const { return dimension_; }
 
  private:
   int LargestReach() const;
   void MakeColours();
+  /// Column (j, c) of the Hessian from its product with the vectors of the column's colour.
+  void SetColumn(int j, int c, const Eigen::VectorXd& product);
 
   const Problem& problem_;
   const BsplineBasis& basis_;
@@ -36,6 +39,7 @@ class HessianBand {
   int reach_;  // the furthest neighbour a control point meets
   int num_colours_ = 0;
   std::vector<int> colours_;  // of the control points
+  RowShape shape_;
   NormalBand band_;
 };
 

@@ -10,6 +10,12 @@
 #include "solvers/normal_spectrum.h"
 
 namespace batten {
+namespace {
+
+constexpr char kNeedsDiagonalSteps[] =
+    "lspia weighs fairing by control point in steps that each has of its own; use step=diagonal";
+
+}  // namespace
 
 SolverInfo LspiaSolver::ClassInfo() {
   SolverInfo info;
@@ -59,8 +65,7 @@ std::string LspiaSolver::WhyUnsupported(const Objective& objective) const {
   std::string why = WhyNoUnboundedCurveView(objective, "lspia");
   if (!why.empty() || !weighs_fairing()) return why;
   if (step_rule_ != "diagonal") {
-    return "lspia weighs fairing by control point in steps that each has of its own; use "
-           "step=diagonal";
+    return kNeedsDiagonalSteps;
   }
   return FairingWeights::WhyNot(objective, "lspia");
 }
@@ -209,8 +214,7 @@ BarzilaiBorweinLspiaSolver::BarzilaiBorweinLspiaSolver(const OptionValues& optio
 
 std::string BarzilaiBorweinLspiaSolver::WhyUnsupported(const Objective& objective) const {
   if (weighs_fairing_) {
-    return "lspia weighs fairing by control point in steps that each has of its own; use "
-           "step=diagonal";
+    return kNeedsDiagonalSteps;
   }
   return WhyNoUnboundedCurveView(objective, "lspia");
 }
