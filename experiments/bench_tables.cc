@@ -82,11 +82,9 @@ KindCounts CountKind(const BenchResults& results, const std::string& kind, std::
   return counts;
 }
 
-/// The rows of CostsOf() that are of one kind.
-CostTable CostsOfKind(const BenchResults& results, std::size_t target, BenchCost cost,
-                      const std::string& kind) {
-  std::vector<std::size_t> rows_of;
-  const CostTable all = CostsOf(results, target, cost, &rows_of);
+/// The rows of CostsOf() that are of one kind; `rows_of` as there.
+CostTable OfKind(const BenchResults& results, const CostTable& all,
+                 const std::vector<std::size_t>& rows_of, const std::string& kind) {
   CostTable costs;
   for (std::size_t r = 0; r < all.size(); ++r) {
     if (results.instances[rows_of[r]].kind == kind) costs.push_back(all[r]);
@@ -171,11 +169,17 @@ CsvTable RunTable(const BenchResults& results) {
 CsvTable SolverTable(const BenchResults& results) {
   CsvTable table({"target", "kind", "solver", "instances", "solved", "best_basin", "of_basins",
                   "evaluations", "work_units", "seconds"});
+  const std::vector<std::string> kinds = Kinds(results);
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
-    for (const std::string& kind : Kinds(results)) {
+    std::vector<std::size_t> rows_of;
+    std::array<CostTable, kBenchCosts.size()> all;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      all[k] = CostsOf(results, t, kBenchCosts[k], &rows_of);
+    }
+    for (const std::string& kind : kinds) {
       std::array<CostTable, kBenchCosts.size()> costs;
       for (std::size_t k = 0; k < costs.size(); ++k) {
-        costs[k] = CostsOfKind(results, t, kBenchCosts[k], kind);
+        costs[k] = OfKind(results, all[k], rows_of, kind);
       }
       if (costs[0].empty()) continue;
       for (std::size_t s = 0; s < results.solvers.size(); ++s) {
