@@ -7,6 +7,7 @@
 
 #include "experiments/audit.h"
 #include "experiments/fit_report.h"
+#include "tests/experiments/bezier_segment.h"
 #include "tests/experiments/outlines.h"
 
 namespace batten {
@@ -97,15 +98,8 @@ TEST(Verify, CatchesAnotherNumberOfVariables) {
   EXPECT_THAT(Failure(Audit(fit)), HasSubstr("do not hold them"));
 }
 
-/// The cubic Bezier segment with C(1/2) = (2, 15/8), C' = (9/2, 3/4), C'' = (0, -15).
 AuditReport WithCondition(const AuditedCondition& condition) {
-  AuditedFit fit;
-  fit.degree = 3;
-  fit.dimension = 2;
-  fit.knots = {0, 0, 0, 0, 1, 1, 1, 1};
-  fit.control_points = {0, 0, 1, 2, 3, 3, 4, 0};
-  fit.points = {2, 2};
-  fit.parameters = {0.5};
+  AuditedFit fit = BezierSegmentAndPoint();
   fit.conditions = {condition};
   return Audit(fit);
 }

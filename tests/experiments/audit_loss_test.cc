@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "experiments/fit_report.h"
+#include "tests/experiments/bezier_segment.h"
 #include "tests/experiments/outlines.h"
 
 namespace batten {
@@ -63,13 +64,9 @@ TEST(EvaluateRho, MakesNoNumberOfNone) {
   }
 }
 
-/// The cubic Bezier segment with C(1/2) = (2, 15/8), from a point at distance 3 and one at 1/2.
+/// The segment at C(1/2) = (2, 15/8), from a point at distance 3 and one at 1/2.
 AuditedFit Segment() {
-  AuditedFit fit;
-  fit.degree = 3;
-  fit.dimension = 2;
-  fit.knots = {0, 0, 0, 0, 1, 1, 1, 1};
-  fit.control_points = {0, 0, 1, 2, 3, 3, 4, 0};
+  AuditedFit fit = BezierSegment();
   fit.points = {5, 1.875, 2, 1.375};
   fit.parameters = {0.5, 0.5};
   return fit;

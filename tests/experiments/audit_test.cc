@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+#include "tests/experiments/bezier_segment.h"
+
 namespace batten {
 namespace {
 
@@ -18,18 +20,6 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // The audit rounds to double once; the expected values are put together with a few roundings more.
 constexpr double kFewRoundings = 8 * kEpsilon;
-
-/// One cubic Bezier segment: C(1/2) = (P0 + 3 P1 + 3 P2 + P3) / 8 = (2, 15/8).
-AuditedFit BezierSegment() {
-  AuditedFit fit;
-  fit.degree = 3;
-  fit.dimension = 2;
-  fit.knots = {0, 0, 0, 0, 1, 1, 1, 1};
-  fit.control_points = {0, 0, 1, 2, 3, 3, 4, 0};
-  fit.points = {2, 2};
-  fit.parameters = {0.5};
-  return fit;
-}
 
 /// A uniform periodic spline on integer knots, domain [0, n), on the line.
 AuditedFit PeriodicLine(int degree, std::vector<double> control_points) {
@@ -52,7 +42,7 @@ double ValueAt(AuditedFit fit, double t) {
 }
 
 TEST(Audit, KnowsTheMiddleOfABezierSegment) {
-  const AuditReport report = Audit(BezierSegment());
+  const AuditReport report = Audit(BezierSegmentAndPoint());
   EXPECT_EQ(report.energy, 1.0 / 64);  // (15/8 - 2)^2
   EXPECT_EQ(report.rms_distance, 0.125);
   EXPECT_EQ(report.max_distance, 0.125);
@@ -61,7 +51,7 @@ TEST(Audit, KnowsTheMiddleOfABezierSegment) {
 }
 
 TEST(Audit, PassesThroughTheEndsOfAClampedCurve) {
-  AuditedFit fit = BezierSegment();
+  AuditedFit fit = BezierSegmentAndPoint();
   fit.parameters = {0.0, 1.0};
   fit.points = {0, 0, 4, 0};
   const AuditReport report = Audit(fit);
@@ -71,7 +61,7 @@ TEST(Audit, PassesThroughTheEndsOfAClampedCurve) {
 }
 
 TEST(Audit, WeighsEnergyButNotDistances) {
-  AuditedFit fit = BezierSegment();
+  AuditedFit fit = BezierSegmentAndPoint();
   fit.parameters = {0.5, 0.5};
   fit.points = {2, 2, 2, 1.875 + 1};  // at distances 1/8 and 1
   fit.weights = {4, 0.5};
@@ -185,7 +175,7 @@ AuditedFit Freed(AuditedFit fit) {
 }
 
 TEST(Audit, TakesTheGradientInFreeParametersTimesTheLength) {
-  AuditedFit fit = Freed(BezierSegment());
+  AuditedFit fit = Freed(BezierSegmentAndPoint());
   // C'(1/2) = 3/4 (P3 + P2 - P1 - P0) = (4.5, 0.75), r = (0, -1/8): dE/dt = -0.1875.
   for (const double length : {1.0, 2.0, 1024.0}) {
     fit.length = length;
@@ -201,7 +191,7 @@ TEST(Audit, TakesTheGradientInFreeParametersTimesTheLength) {
 }
 
 TEST(Audit, LeavesOutParametersThatAreHeld) {
-  AuditedFit fit = BezierSegment();
+  AuditedFit fit = BezierSegmentAndPoint();
   const double fixed = Audit(fit).gradient_norm;
   fit.parameter_states = {ParameterState::kHeld};
   EXPECT_EQ(Audit(fit).gradient_norm, fixed);
@@ -218,7 +208,7 @@ TEST(Audit, TellsPressedParametersPastAnEndFromThoseThatEDrawsBack) {
   const Case cases[] = {
       {0.0, {1, 0}, 2 * 3}, {0.0, {-1, 0}, 0}, {1.0, {3, 0}, 2 * 3}, {1.0, {4, -2}, 0}};
   for (const Case& one : cases) {
-    AuditedFit fit = BezierSegment();
+    AuditedFit fit = BezierSegmentAndPoint();
     fit.parameters = {one.t};
     fit.points = one.point;
     const double fixed = Audit(fit).gradient_norm;
@@ -333,7 +323,7 @@ TEST(Verify, AcceptsTheTruth) {
 }
 
 TEST(Verify, AcceptsAMinimumAtTheRoundingFloor) {
-  AuditedFit fit = BezierSegment();
+  AuditedFit fit = BezierSegmentAndPoint();
   fit.parameters = {0.0, 1.0};
   fit.points = {0, 0, 4 * (1 + kEpsilon), 0};  // one rounding off
   const AuditReport report = Audit(fit);
@@ -386,7 +376,7 @@ TEST(Verify, CatchesAMinimumAboveTheStart) {
 }
 
 TEST(Verify, CatchesAMinimumWhoseParametersAreDrawnBackIntoTheDomain) {
-  AuditedFit fit = BezierSegment();
+  AuditedFit fit = BezierSegmentAndPoint();
   fit.parameters = {1.0};
   fit.points = {3, 0};
   fit.parameter_states = {ParameterState::kPastEnd};
@@ -414,13 +404,13 @@ TEST(Verify, CatchesNumbersThatAreNone) {
     gradient.gradient_norm = wrong;
     EXPECT_FALSE(Verify(gradient, report).holds);
   }
-  AuditedFit broken = BezierSegment();
+  AuditedFit broken = BezierSegmentAndPoint();
   broken.control_points[2] = kNan;
   EXPECT_FALSE(Verify(TrueClaim(report), Audit(broken)).holds);
 }
 
 TEST(Verify, LetsARunSayThatItEndedWithoutANumber) {
-  AuditedFit broken = BezierSegment();
+  AuditedFit broken = BezierSegmentAndPoint();
   broken.control_points[2] = kNan;
   Claim claim;
   claim.energy = kNan;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "experiments/fit_report.h"
+#include "tests/experiments/bezier_segment.h"
 #include "tests/experiments/outlines.h"
 
 namespace batten {
@@ -18,16 +19,6 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // The audit computes in long double and rounds once; the expected values have a few roundings more.
 constexpr double kFewRoundings = 8 * kEpsilon;
-
-/// One cubic Bezier segment, no data: P = (0, 0), (1, 2), (3, 3), (4, 0).
-AuditedFit Segment() {
-  AuditedFit fit;
-  fit.degree = 3;
-  fit.dimension = 2;
-  fit.knots = {0, 0, 0, 0, 1, 1, 1, 1};
-  fit.control_points = {0, 0, 1, 2, 3, 3, 4, 0};
-  return fit;
-}
 
 AuditReport WithIntegral(AuditedFit fit, int derivative, double factor) {
   fit.integrals = {{derivative, factor, {}}};
@@ -39,15 +30,16 @@ AuditReport WithIntegral(AuditedFit fit, int derivative, double factor) {
 // Second differences a = (1, -1), b = (-1, -4): 36 (a.a + a.b + b.b) / 3 = 264. Third (-2, -3):
 // 468.
 TEST(AuditedIntegral, IsTheIntegralOfABezierSegment) {
-  EXPECT_NEAR(WithIntegral(Segment(), 1, 1.0).energy, 35.4, kFewRoundings * 35.4);
-  EXPECT_NEAR(WithIntegral(Segment(), 2, 0.5).energy, 132.0, kFewRoundings * 132.0);
-  EXPECT_NEAR(WithIntegral(Segment(), 3, 2.0).energy, 936.0, kFewRoundings * 936.0);
+  EXPECT_NEAR(WithIntegral(BezierSegment(), 1, 1.0).energy, 35.4, kFewRoundings * 35.4);
+  EXPECT_NEAR(WithIntegral(BezierSegment(), 2, 0.5).energy, 132.0, kFewRoundings * 132.0);
+  EXPECT_NEAR(WithIntegral(BezierSegment(), 3, 2.0).energy, 936.0, kFewRoundings * 936.0);
 }
 
 // C''' = 6 v, v = P_3 - 3 P_2 + 3 P_1 - P_0: the gradient is 72 v (-1, 3, -3, 1).
 TEST(AuditedIntegral, HasTheGradientOfABezierSegment) {
   const double expected = 72.0 * std::sqrt(13.0) * std::sqrt(20.0);
-  EXPECT_NEAR(WithIntegral(Segment(), 3, 1.0).gradient_norm, expected, kFewRoundings * expected);
+  EXPECT_NEAR(WithIntegral(BezierSegment(), 3, 1.0).gradient_norm, expected,
+              kFewRoundings * expected);
 }
 
 TEST(AuditedIntegral, WeighsItsSpans) {
@@ -63,7 +55,7 @@ TEST(AuditedIntegral, WeighsItsSpans) {
 
 // C'(0) = 3 (P_1 - P_0) = (3, 6), C''(1) = 6 (P_3 - 2 P_2 + P_1) = (-6, -24), C(1) = (4, 0).
 TEST(AuditedEnd, ComparesDerivativesAtTheEnds) {
-  AuditedFit fit = Segment();
+  AuditedFit fit = BezierSegment();
   fit.ends = {{false, 1, 2.0, {3.0, 4.0}}};
   EXPECT_NEAR(Audit(fit).energy, 8.0, kFewRoundings * 8.0);
   fit.ends = {{true, 2, 1.0, {-5.0, -22.0}}};
@@ -107,13 +99,6 @@ std::unique_ptr<Problem> Wave(bool closed, int degree, ParameterKind kind,
   return problem;
 }
 
-NameSpec Term(const std::string& text) {
-  NameSpec name;
-  std::string error;
-  EXPECT_TRUE(ParseNameSpec(text, &name, &error)) << error;
-  return name;
-}
-
 void ExpectVerified(const Problem& problem, const std::string& solver, int iterations) {
   RunSpec spec;
   spec.max_iterations = iterations;
@@ -136,7 +121,7 @@ TEST(MeasureFit, AuditsFairingAndEnds) {
   for (const std::string& term : open_terms) {
     for (const auto& [begin, length] : {std::pair(0.0, 1.0), std::pair(1000.0, 8.0)}) {
       const auto problem = Wave(false, 4, ParameterKind::kFixed,
-                                {Term("interpolation/weight=2"), Term(term)}, begin, length);
+                                {Named("interpolation/weight=2"), Named(term)}, begin, length);
       for (const int iterations : {0, 5, 1000}) ExpectVerified(*problem, "lbfgs", iterations);
       ExpectVerified(*problem, "banded_cholesky", 1);
       if (HasFatalFailure() || HasNonfatalFailure()) FAIL() << term << begin;
@@ -147,12 +132,12 @@ TEST(MeasureFit, AuditsFairingAndEnds) {
 TEST(MeasureFit, AuditsFairingBesideMovingParameters) {
   for (const bool closed : {false, true}) {
     const auto free = Wave(closed, 3, ParameterKind::kFree,
-                           {Term("free_parameter"), Term("fairing/weight=1e-5")}, 0.0, 1.0);
+                           {Named("free_parameter"), Named("fairing/weight=1e-5")}, 0.0, 1.0);
     for (const char* solver : {"newton", "lm_schur", "lbfgs", "pdm"}) {
       for (const int iterations : {0, 4, 300}) ExpectVerified(*free, solver, iterations);
     }
     const auto projected = Wave(closed, 3, ParameterKind::kProjected,
-                                {Term("foot_point"), Term("fairing/weight=1e-5")}, 0.0, 1.0);
+                                {Named("foot_point"), Named("fairing/weight=1e-5")}, 0.0, 1.0);
     for (const int iterations : {0, 4, 300}) ExpectVerified(*projected, "newton", iterations);
   }
 }
@@ -160,9 +145,9 @@ TEST(MeasureFit, AuditsFairingBesideMovingParameters) {
 // The same run beside a problem whose term weighs a millionth more: E and g are not its own.
 TEST(MeasureFit, CatchesAnotherWeightOfFairing) {
   const auto problem = Wave(false, 3, ParameterKind::kFixed,
-                            {Term("interpolation"), Term("fairing/weight=1e-3")}, 0.0, 1.0);
+                            {Named("interpolation"), Named("fairing/weight=1e-3")}, 0.0, 1.0);
   const auto other = Wave(false, 3, ParameterKind::kFixed,
-                          {Term("interpolation"), Term("fairing/weight=1.000001e-3")}, 0.0, 1.0);
+                          {Named("interpolation"), Named("fairing/weight=1.000001e-3")}, 0.0, 1.0);
   const RunResult run = RunSolver(*problem, "banded_qr", {});
   EXPECT_TRUE(MeasureFit(*problem, run, {}).verdict.holds);
   EXPECT_FALSE(MeasureFit(*other, run, {}).verdict.holds);
@@ -170,7 +155,7 @@ TEST(MeasureFit, CatchesAnotherWeightOfFairing) {
 
 TEST(MeasureFit, DoesNotAuditFairingAlone) {
   const auto problem =
-      Wave(false, 3, ParameterKind::kFixed, {Term("fairing/weight=1e-3")}, 0.0, 1.0);
+      Wave(false, 3, ParameterKind::kFixed, {Named("fairing/weight=1e-3")}, 0.0, 1.0);
   EXPECT_FALSE(MeasureFit(*problem, RunSolver(*problem, "lbfgs", {}), {}).audited);
 }
 

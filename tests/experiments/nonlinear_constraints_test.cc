@@ -12,6 +12,7 @@
 #include "experiments/fit_report.h"
 #include "experiments/run.h"
 #include "problems/constraint_projection.h"
+#include "tests/experiments/outlines.h"
 #include "tests/solvers/test_fits.h"
 #include "tests/splines/example_splines.h"
 
@@ -22,13 +23,6 @@ using ::testing::HasSubstr;
 
 /// What constraints that are not linear hold to, in units of the data's size.
 constexpr double kHeld = 1e-10;
-
-NameSpec Named(const std::string& text) {
-  NameSpec name;
-  std::string error;
-  EXPECT_TRUE(ParseNameSpec(text, &name, &error)) << error;
-  return name;
-}
 
 RunResult Solve(const Problem& problem, const std::string& solver, RunSpec spec = {}) {
   RunResult run;

@@ -46,13 +46,19 @@ struct FixedFit {
   std::vector<double> knots;
 };
 
+/// A name with options as users write it.
+inline NameSpec Named(const std::string& text) {
+  NameSpec name;
+  std::string error;
+  EXPECT_TRUE(ParseNameSpec(text, &name, &error)) << error;
+  return name;
+}
+
 inline RunResult RunSolver(const Problem& problem, const std::string& solver,
                            const RunSpec& spec = {}) {
-  NameSpec name;
   RunResult result;
   std::string error;
-  EXPECT_TRUE(ParseNameSpec(solver, &name, &error)) << error;
-  EXPECT_TRUE(Run(problem, name, spec, &result, &error)) << error;
+  EXPECT_TRUE(Run(problem, Named(solver), spec, &result, &error)) << error;
   return result;
 }
 

@@ -13,13 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-NameSpec Named(const std::string& text) {
-  NameSpec name;
-  std::string error;
-  CHECK(ParseNameSpec(text, &name, &error)) << error;
-  return name;
-}
-
 /// Evaluates E at the start moved by 0, 1, 2, ... along all axes; from call `changed` on (none if
 /// negative) by `change` more.
 FaultySolver::Method Walk(int steps, int changed, double change) {

@@ -85,7 +85,7 @@ TEST_P(EveryProblem, HasItsLeastEnergyAsReference) {
   EXPECT_EQ(problem->curve_fit()->spec().control_points, entry.spec.control_points);
 
   // With free parameters there are many minima, and the least one is not known: what is stated is
-  // the best known (StartComparison.FindsTheBestKnownEnergyOfTheRhinoceros).
+  // the best known (tests/experiments/best_known_test.cc).
   if (problem->curve_fit()->spec().parameter_kind != ParameterKind::kFixed) {
     EXPECT_GT(entry.reference_energy, 0.0);
     return;
