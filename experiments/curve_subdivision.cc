@@ -152,6 +152,12 @@ bool SubdivideCurves(const std::vector<BezierPath>& paths, CutRule* rule,
   }
   result->points = Eigen::Map<const Points>(
       coordinates.data(), static_cast<Eigen::Index>(result->vertices.size()), dimension);
+  if (num_curves > 1 && result->num_failing > 0) {
+    result->message = std::to_string(result->num_failing) + " of " +
+                      std::to_string(result->num_pieces) + " pieces of all " +
+                      std::to_string(num_curves) + " curves do not pass; of one curve, " +
+                      result->message;
+  }
   const std::string missed = MissedTolerance(options, *result);
   if (!missed.empty()) result->message += (result->message.empty() ? "" : "; ") + missed;
   return true;

@@ -87,6 +87,17 @@ TEST(SubdivideCommand, CutsThePathsOfAnSvgFile) {
   EXPECT_EQ(lines.back(), "1,1,5,1");
 }
 
+TEST(SubdivideCommand, CountsWhatDoesNotPassOverAllCurves) {
+  const TemporaryFolder folder;
+  const std::string svg = folder.Write("a.svg", "M0 0Q5 9 9 0Q13 9 18 0");
+  const Ended ended = RunBatten(
+      {"subdivide", svg, "--rule=half", "--max_depth=2", "--report=" + (folder / "r.json")});
+  EXPECT_EQ(ended.status, 1) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("8 of 8 pieces of all 2 curves do not pass; of one curve, 4 of "
+                                   "4 pieces do not pass: the bound on depth"));
+  EXPECT_EQ(ReadJson(folder / "r.json")["failing_pieces"], 8);
+}
+
 TEST(SubdivideCommand, SaysWhatItLeavesOutOfAnSvgFile) {
   const TemporaryFolder folder;
   const std::string svg =
