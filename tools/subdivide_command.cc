@@ -178,10 +178,11 @@ Command SubdivideCommand() {
   command.arguments = "FILE";
   command.summary = "cuts Bezier curves into pieces that their chords can stand for";
   command.details = {
-      "FILE: control points of one Bezier curve as CSV or rows of numbers (- is standard input), a "
+      "FILE: control points of one Bezier curve as CSV with a header x,y or x,y,z, or rows of "
+      "numbers without commas (- is standard input), a "
       "fit.json, whose spline is cut span by span, JSON with control_points, or an SVG file, whose "
       "paths are cut curve by curve (M, L, H, V, C, S, Q, T, Z); other shapes are left out, and "
-      "that is said.",
+      "that is said; an arc (A) or a transform is refused.",
       "The true error is a certified upper bound of the Hausdorff distance of curves and "
       "polylines. "
       "Exit status 1: a bound on depth or pieces was hit; the polyline is written all the same."};
