@@ -20,7 +20,8 @@ rm -rf "$together"  # it would keep units of files that are gone
 configure "$alone" OFF
 configure "$together" ON
 
-ours="^$PWD/(splines|cost_functions|problems|solvers|experiments|tools)/[a-z0-9_]+\\.(h|cc)\$"
+# As in .clang-tidy, and the sources that a unit includes.
+ours='(^|/)(splines|cost_functions|problems|solvers|experiments|tools)/[a-z0-9_]+\.(h|cc)$'
 
 # tidy BUILD SOURCE: only what it found is of interest, not the thousands of warnings it hides.
 tidy() {
@@ -28,21 +29,22 @@ tidy() {
     -checks=-bugprone-suspicious-include -header-filter="$ours" "$2" 2>/dev/null
 }
 
-# Status 1 on a finding; a source that cannot be read is one.
+# check UNIT: status 1 on a finding; a source that cannot be read is one.
 check() {
-  local unit=$1 found source status=0
-  if found=$(tidy "$together" "$unit"); then
-    echo "clean: $(sed -n 's/^#include "\(.*\)"$/\1/p' "$unit" | sed "s|^$PWD/||" | tr '\n' ' ')"
+  local unit=$1 sources source found status=0
+  mapfile -t sources < <(sed -n 's/^#include "\(.*\)"$/\1/p' "$unit")
+  if tidy "$together" "$unit" >/dev/null; then
+    printf 'clean: %s\n' "${sources[@]#"$PWD"/}"
     return 0
   fi
-  while read -r source; do
+  for source in "${sources[@]}"; do
     if found=$(tidy "$alone" "$source"); then
       echo "clean: ${source#"$PWD"/}"
     else
       echo "$found"
       status=1
     fi
-  done < <(sed -n 's/^#include "\(.*\)"$/\1/p' "$unit")
+  done
   return "$status"
 }
 export alone together ours
