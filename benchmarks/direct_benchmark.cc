@@ -19,13 +19,13 @@ constexpr int kControlPoints = 10000;
 
 /// The solver alone, from the problem's start: rows are streamed, nothing is left from a call
 /// before.
-Eigen::VectorXd Solve(const Problem& problem, const std::string& solver_name) {
+Eigen::VectorXd Solve(const Problem& problem, const std::string& solver_name, int threads = 1) {
   std::string error;
   const std::unique_ptr<Solver> solver =
       SolverRegistry::Global().Make({solver_name, {}, nullptr}, nullptr, &error);
   CHECK(solver != nullptr) << error;
   Objective objective(&problem, nullptr);
-  IdleContext context;
+  IdleContext context(threads);
   Eigen::VectorXd x = objective.start();
   const Outcome outcome = solver->Minimize(&objective, &context, &x);
   CHECK(outcome.reason == StopReason::kSolved) << outcome.message;
@@ -39,32 +39,36 @@ void ReportEnergy(benchmark::State& state, const Problem& problem, const Eigen::
   state.counters["energy"] = energy * problem.units().energy;
 }
 
+double Seconds(int threads) { return threads == 1 ? CpuSeconds() : WallSeconds(); }
+
 /// From a data set in memory to control points in its units, as peers do it: spans, scaling, start,
 /// rows and solution. Copying the data set and giving memory back is off the clock.
-void FromDataSet(benchmark::State& state, const std::string& solver_name, bool closed) {
+void FromDataSet(benchmark::State& state, const std::string& solver_name, bool closed,
+                 int threads = 1) {
   const DataSet data = MakeNoisyLoop(kPoints);
   std::unique_ptr<Problem> problem;
   Eigen::VectorXd x;
   for (auto _ : state) {
     problem.reset();
     DataSet copy = data;
-    const double start = CpuSeconds();
+    const double start = Seconds(threads);
     problem = MakeLoopFit(std::move(copy), kControlPoints, closed);
-    x = Solve(*problem, solver_name);
+    x = Solve(*problem, solver_name, threads);
     const Points control_points = problem->curve_fit()->ControlPoints(x);
-    state.SetIterationTime(CpuSeconds() - start);
+    state.SetIterationTime(Seconds(threads) - start);
     benchmark::DoNotOptimize(control_points.data());
   }
   ReportEnergy(state, *problem, x);
 }
 
-void FromProblem(benchmark::State& state, const std::string& solver_name, bool closed) {
+void FromProblem(benchmark::State& state, const std::string& solver_name, bool closed,
+                 int threads = 1) {
   const Problem& problem = LoopFit(kPoints, kControlPoints, closed);
   Eigen::VectorXd x;
   for (auto _ : state) {
-    const double start = CpuSeconds();
-    x = Solve(problem, solver_name);
-    state.SetIterationTime(CpuSeconds() - start);
+    const double start = Seconds(threads);
+    x = Solve(problem, solver_name, threads);
+    state.SetIterationTime(Seconds(threads) - start);
     benchmark::DoNotOptimize(x.data());
   }
   ReportEnergy(state, problem, x);
@@ -83,6 +87,18 @@ BATTEN_DIRECT_BENCHMARK(FromProblem, banded_cholesky, closed);
 BATTEN_DIRECT_BENCHMARK(FromProblem, banded_qr, open);
 BATTEN_DIRECT_BENCHMARK(FromProblem, banded_qr, closed);
 #undef BATTEN_DIRECT_BENCHMARK
+
+// Two threads share the sum of the normal band; what comes before and after stays in one.
+#define BATTEN_THREADED_BENCHMARK(function, form)                                                 \
+  BENCHMARK_CAPTURE(function, banded_cholesky_##form##_2_threads, std::string("banded_cholesky"), \
+                    std::string(#form) == "closed", 2)                                            \
+      ->UseManualTime()                                                                           \
+      ->Unit(benchmark::kMillisecond)
+BATTEN_THREADED_BENCHMARK(FromDataSet, open);
+BATTEN_THREADED_BENCHMARK(FromDataSet, closed);
+BATTEN_THREADED_BENCHMARK(FromProblem, open);
+BATTEN_THREADED_BENCHMARK(FromProblem, closed);
+#undef BATTEN_THREADED_BENCHMARK
 
 /// 1e7 points, 1e5 control points. The peak is that of the whole process, data included, since it
 /// began: true only if this is the one benchmark of the process (--benchmark_filter).

@@ -18,11 +18,18 @@
 
 namespace batten {
 
-/// CPU time of this process. Everything measured runs in one thread: without neighbours it is the
-/// time on the wall, with some it does not count the time they were given.
+/// CPU time of this process. What runs in one thread is measured by it: without neighbours it is
+/// the time on the wall, with some it does not count the time they were given.
 inline double CpuSeconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Time on the wall, for what runs in several threads.
+inline double WallSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -88,12 +95,16 @@ inline const Problem& LoopFit(int num_points, int control_points, bool closed, i
 /// Run control without control: never stops a solver, books nothing, costs nothing.
 class IdleContext final : public RunContext {
  public:
+  explicit IdleContext(int threads = 1) : threads_(threads) {}
   Status Iterate(const Eigen::VectorXd& /*x*/) override { return Status::kOk; }
   StopReason stop_reason() const override { return StopReason::kNotRun; }
   void Note(const std::string& /*name*/, const std::string& /*value*/) override {}
   void OffTheClock(const std::function<void()>& work) override { work(); }
   std::uint64_t seed() const override { return 1; }
-  int threads() const override { return 1; }
+  int threads() const override { return threads_; }
+
+ private:
+  int threads_;
 };
 
 }  // namespace batten

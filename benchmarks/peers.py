@@ -111,7 +111,8 @@ def run_program(path, *flags):
         name = entry['name'].replace('/manual_time', '').replace('/iterations:1', '')
         if entry.get('error_occurred'):
             sys.exit(f'{name}: {entry["error_message"]}')
-        # Our own clocks, where they are used, show as real time. They too count CPU time.
+        # Our own clocks, where they are used, show as real time. They count CPU time, but for
+        # what runs in several threads.
         clock = 'real_time' if '/manual_time' in entry['name'] else 'cpu_time'
         sample[name] = entry[clock] * UNIT_SECONDS[entry['time_unit']]
         for counter in targets.COUNTERS:
@@ -206,7 +207,8 @@ def render(measured, options):
              'Written by `benchmarks/run.sh`; `docs/benchmarks.md` says what the rows mean.', '',
              *machine(), '',
              f'Medians; rounds: {len(measured.generic)}. Cubic, 2-D, 1e6 points, 1e4 control '
-             'points unless a row says otherwise. One thread, CPU time.', '']
+             'points unless a row says otherwise. One thread and CPU time, or two threads and time '
+             'on the wall where a row says so.', '']
     if options.quick:
         lines += ['**A trial (`--quick`): not for the record.**', '']
     if measured.busy > BUSY:

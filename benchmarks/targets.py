@@ -30,14 +30,22 @@ COMPILED = 'EnergyAndGradient/compiled'
 UNCOMPILED = 'EnergyAndGradient/uncompiled'
 
 
+STARTS = (('from a data set', 'FromDataSet'), ('solver alone', 'FromProblem'))
+
+
 def faster(what, than, peer, ours, target=0.0):
     return Row(f'{what}: times faster than {than}', peer, ours, target, at_least=True)
 
 
 def direct_fits(solver, form, than, peer, target=0.0):
     return [faster(f'`{solver}`, {form}, {text}', than, peer, f'{group}/{solver}_{form}', target)
-            for text, group in (('from a data set', 'FromDataSet'),
-                                ('solver alone', 'FromProblem'))]
+            for text, group in STARTS]
+
+
+def threaded_fits(form, than, peer, target):
+    return [faster(f'`banded_cholesky` in 2 threads, {form}, {text}', than, peer,
+                   f'{group}/banded_cholesky_{form}_2_threads', target)
+            for text, group in STARTS]
 
 
 # Iterations that cost about one of lspia, and how many times that they may.
@@ -47,6 +55,8 @@ FAMILY = {'jacobi_pia': 1.5, 'gauss_seidel_pia': 1.5, 'sor_pia': 1.5, 'polyak_ls
 TARGETS = [
     *direct_fits('banded_cholesky', 'open', 'SciPy `make_lsq_spline`', LSQ, 10),
     *direct_fits('banded_cholesky', 'closed', 'SciPy periodic `splprep`', SPLPREP, 100),
+    *threaded_fits('open', 'SciPy `make_lsq_spline`', LSQ, 10),
+    *threaded_fits('closed', 'SciPy periodic `splprep`', SPLPREP, 100),
     *direct_fits('banded_qr', 'open', 'SciPy `make_lsq_spline`', LSQ, 2.5),
     Row('E and g, compiled, per point', f'{COMPILED}:per_point', '', 6, unit=' ns', scale=1e-9),
     faster('E and g, compiled', '`ceres::Problem::Evaluate`', CERES, COMPILED, 30),
@@ -73,7 +83,10 @@ TIMES = [
     ('reading points and parameters once', 'ReadInput', 'ms'),
     *[(f'`{solver}`, {form}, {text}', f'{group}/{solver}_{form}', 'ms')
       for solver in ('banded_cholesky', 'banded_qr') for form in ('open', 'closed')
-      for text, group in (('from a data set', 'FromDataSet'), ('solver alone', 'FromProblem'))],
+      for text, group in STARTS],
+    *[(f'`banded_cholesky` in 2 threads, {form}, {text}',
+       f'{group}/banded_cholesky_{form}_2_threads', 'ms')
+      for form in ('open', 'closed') for text, group in STARTS],
     ('SciPy `make_lsq_spline`', LSQ, 'ms'),
     ('SciPy periodic `splprep`', SPLPREP, 'ms'),
     ('SciPy periodic `splprep`, `nest` = number of knots', SPLPREP_NEST, 'ms'),

@@ -13,12 +13,15 @@ namespace {
 void GroupSorted(const BsplineBasis& basis, Sites* sites) {
   const double* const t = sites->parameters;
   int span = basis.first_span();
+  std::ptrdiff_t length = 0;  // of the last group: the next is mostly about as long
   for (int begin = 0; begin < sites->size;) {
     span = basis.FindSpanFrom(span, t[begin]);
     const double next_knot = basis.knots()[static_cast<std::size_t>(span) + 1];
     // The end of an open domain belongs to the span before it.
     const bool last = !basis.periodic() && next_knot >= basis.domain_end();
-    const auto end = last ? sites->size : FirstNotBelow(t, begin, sites->size, next_knot);
+    const auto end =
+        last ? sites->size : FirstNotBelow(t, begin, sites->size, next_knot, begin + length);
+    length = end - begin;
     sites->groups.push_back({span, begin, static_cast<int>(end)});
     begin = static_cast<int>(end);
   }
@@ -61,6 +64,26 @@ void GroupBySpan(const BsplineBasis& basis, bool nondecreasing, Sites* sites) {
                    [&](int a, int b) { return spans[a] < spans[b]; });
   sites->groups.clear();
   for (std::size_t s = 0; s < size; ++s) add(spans[sites->order[s]], static_cast<int>(s));
+}
+
+std::vector<int> CutIntoParts(const BsplineBasis& basis, const Sites& sites) {
+  // About 0.1 ms of work.
+  constexpr int kLeastSites = 1 << 14;
+  const std::vector<Sites::Group>& groups = sites.groups;
+  std::vector<int> begins = {0};
+  const auto first_of_last_part = [&] { return groups[static_cast<std::size_t>(begins.back())]; };
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bool is_long_enough = groups[g].begin - first_of_last_part().begin >= kLeastSites &&
+                                groups[g].span - first_of_last_part().span >= basis.order();
+    if (is_long_enough) begins.push_back(static_cast<int>(g));
+  }
+  // Behind it a periodic curve goes on with the first part.
+  const bool last_is_short =
+      begins.size() > 1 && basis.last_span() + 1 - first_of_last_part().span < basis.order();
+  if (last_is_short) begins.pop_back();
+  if (begins.size() % 2 == 1 && begins.size() > 1) begins.pop_back();
+  begins.push_back(static_cast<int>(groups.size()));
+  return begins;
 }
 
 }  // namespace batten

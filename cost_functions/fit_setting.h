@@ -34,6 +34,11 @@ struct Sites {
 /// spans.
 void GroupBySpan(const BsplineBasis& basis, bool nondecreasing, Sites* sites);
 
+/// Cuts the groups into parts for RowSource: the first group of each part, and behind the last part
+/// the number of groups. A part is long enough to be worth a thread's while, and goes over at least
+/// p + 1 spans.
+std::vector<int> CutIntoParts(const BsplineBasis& basis, const Sites& sites);
+
 /// What a term is told about the fit: the spline space, the data, and where the control points
 /// stand in x. Inside, data are (point - center) * scale.
 struct FitSetting {

@@ -36,7 +36,8 @@ class FunctorFamily final : public BlockFamily, private RowSource {
       : BlockFamily(weight, std::move(loss)),
         setting_(setting),
         functor_(std::move(functor)),
-        sites_(functor_.MakeSites(setting)) {
+        sites_(functor_.MakeSites(setting)),
+        part_begins_(CutIntoParts(*setting.basis, *sites_)) {
     if constexpr (kMayHaveRows) rows_are_alike_ = RowsAreAlike();
   }
 
@@ -159,9 +160,17 @@ class FunctorFamily final : public BlockFamily, private RowSource {
     return shape;
   }
   void Stream(RowConsumer* consumer) const override {
+    StreamGroups(0, static_cast<int>(sites_->groups.size()), consumer);
+  }
+  int num_parts() const override { return static_cast<int>(part_begins_.size()) - 1; }
+  void StreamPart(int part, RowConsumer* consumer) const override {
+    const auto k = static_cast<std::size_t>(part);
+    StreamGroups(part_begins_[k], part_begins_[k + 1], consumer);
+  }
+  void StreamGroups(int first, int end, RowConsumer* consumer) const {
     if constexpr (kMayHaveRows) {
       WithKernel([&](const auto& kernel) {
-        kernel.StreamRows(std::sqrt(weight()), consumer);
+        kernel.StreamRows(std::sqrt(weight()), first, end, consumer);
         return true;
       });
     }
@@ -221,6 +230,7 @@ class FunctorFamily final : public BlockFamily, private RowSource {
   FitSetting setting_;
   Functor functor_;
   std::shared_ptr<const Sites> sites_;
+  std::vector<int> part_begins_;
   bool rows_are_alike_ = false;
 };
 

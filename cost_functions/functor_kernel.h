@@ -227,9 +227,10 @@ class FunctorKernel {
   }
 
   /// Hands out the rows root_factor * (A, Q) of an affine residual whose rows are alike for all
-  /// coordinates.
-  void StreamRows(double root_factor, RowConsumer* consumer) const {
-    FunctorRows<Functor, P, D>(setting_, sites_, functor_).Stream(root_factor, consumer);
+  /// coordinates, in the spans of groups first_group..end_group-1.
+  void StreamRows(double root_factor, int first_group, int end_group, RowConsumer* consumer) const {
+    FunctorRows<Functor, P, D>(setting_, sites_, functor_)
+        .Stream(root_factor, first_group, end_group, consumer);
   }
 
  private:

@@ -31,8 +31,9 @@ class FunctorRows {
   FunctorRows(const FitSetting& setting, const Sites& sites, const Functor& functor)
       : setting_(setting), sites_(sites), basis_(*setting.basis), functor_(functor) {}
 
-  /// Hands out the rows root_factor * (A, Q), span by span.
-  void Stream(double root_factor, RowConsumer* consumer) const {
+  /// Hands out the rows root_factor * (A, Q) of groups first_group..end_group-1, span by
+  /// span.
+  void Stream(double root_factor, int first_group, int end_group, RowConsumer* consumer) const {
     Form variables[kOrderStorage];
     const Form* points[kOrderStorage];
     PlainForm few_variables[kOrderStorage];
@@ -45,7 +46,8 @@ class FunctorRows {
     }
     // Right-hand sides behind the coefficients: consumers have their fastest loops for that.
     alignas(32) double rows[(kOrderStorage + kDimensionStorage) * kMaxRowsPerBlock];
-    for (const Sites::Group& group : sites_.groups) {
+    for (int g = first_group; g < end_group; ++g) {
+      const Sites::Group& group = sites_.groups[static_cast<std::size_t>(g)];
       if (group.end - group.begin < kRowPack) {
         consumer->Consume(FillFew(group, root_factor, few_points, rows));
         continue;

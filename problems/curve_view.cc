@@ -63,14 +63,14 @@ const BandedRows& CurveView::rows() const {
   return *rows_;
 }
 
-const NormalBand& CurveView::normal_band() const {
+const NormalBand& CurveView::normal_band(int threads) const {
   if (band_ == nullptr) {
     if (rows_ != nullptr || sources_.size() == 1) {
-      band_ = std::make_unique<NormalBand>(NormalBand::FromRows(row_source()));
+      band_ = std::make_unique<NormalBand>(NormalBand::FromRows(row_source(), threads));
     } else {
       // Term by term: their rows need not be brought into one order for that.
       auto band = std::make_unique<NormalBand>(shape_);
-      for (const RowSource* source : sources_) source->Stream(band.get());
+      for (const RowSource* source : sources_) band->AddRows(*source, threads);
       band_ = std::move(band);
     }
   }

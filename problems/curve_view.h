@@ -33,8 +33,8 @@ class CurveView {
   const RowSource& row_source() const;
   /// The rows in memory, compiled at the first call.
   const BandedRows& rows() const;
-  /// A'A and A'Q, summed at the first call in one stream over the rows.
-  const NormalBand& normal_band() const;
+  /// A'A and A'Q, summed at the first call in one stream over the rows, which `threads` share.
+  const NormalBand& normal_band(int threads = 1) const;
 
   /// residuals = Q - A P, m x d in row order. Counts one product.
   Status Residuals(const Eigen::VectorXd& x, Points* residuals);

@@ -69,6 +69,8 @@ bool CurveFit::ChooseParameters(std::string* error) {
   data_.parameters.reset();
   if (spec_.domain.has_value()) {
     domain_ = *spec_.domain;
+  } else if (!spec_.closed && IsNondecreasing(parameters_.data(), parameters_.size())) {
+    domain_ = {parameters_[0], parameters_[m - 1]};
   } else if (!spec_.closed) {
     const auto [low, high] =
         std::minmax_element(parameters_.data(), parameters_.data() + parameters_.size());
@@ -158,8 +160,7 @@ bool CurveFit::Scale(std::string* error) {
   Eigen::RowVectorXd low;
   Eigen::RowVectorXd high;
   if (weights == nullptr) {
-    low = data_.points.colwise().minCoeff();
-    high = data_.points.colwise().maxCoeff();
+    FindBoundingBox(data_.points, &low, &high);
   } else {
     low.setConstant(dimension(), std::numeric_limits<double>::infinity());
     high = -low;

@@ -118,11 +118,14 @@ Points CurveFit::StartOnPolyline() const {
   const auto item = [&order](int k) {
     return order.empty() ? k : order[static_cast<std::size_t>(k)];
   };
-  std::ptrdiff_t near = 0;  // abscissae mostly grow from one control point to the next
+  // Abscissae mostly grow from one control point to the next, by about as much as before.
+  std::ptrdiff_t near = 0;
+  std::ptrdiff_t last_step = 0;
   const auto first_above = [&](double t) {
     if (sorted[near] > t) near = 0;
     const double above = std::nextafter(t, std::numeric_limits<double>::infinity());
-    const std::ptrdiff_t found = FirstNotBelow(sorted.data(), near, m, above);
+    const std::ptrdiff_t found = FirstNotBelow(sorted.data(), near, m, above, near + last_step);
+    last_step = found - near;
     near = std::min<std::ptrdiff_t>(found, m - 1);
     return static_cast<int>(found);
   };

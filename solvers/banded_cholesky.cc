@@ -21,7 +21,7 @@ SolverInfo BandedCholeskySolver::ClassInfo() {
 
 Outcome BandedCholeskySolver::SolveRows(const CurveView& view, const Problem& /*problem*/,
                                         RunContext* context, Eigen::VectorXd* x) const {
-  const NormalBand& band = view.normal_band();
+  const NormalBand& band = view.normal_band(context->threads());
   // Forward error of normal equations: at most about the condition number of N times eps (Higham,
   // Accuracy and Stability, sec. 20.4). 1e-8 of the data's size is what the solvers are to agree
   // to; where no digit is sure, the normal equations are not the way.

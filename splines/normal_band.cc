@@ -2,82 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
+#include "splines/block_gram.h"
 #include "splines/row_pack.h"
 
 namespace batten {
-namespace {
-
-/// Columns of [A | Q] whose inner products with all later columns are summed in one pass, so that
-/// the sums stay in registers.
-constexpr int ColumnsPerPass(int later_columns) { return later_columns > 7 ? 1 : 2; }
-
-/// gram (row-major, kColumns x kColumns) = upper triangle of [A|Q]'[A|Q], from column kFirst on;
-/// of Q'Q only the diagonal is needed but all is summed.
-template <int kFirst, int kRows, int kColumns>
-void AddGramRows(const RowPack* columns, int packs, double* gram) {
-  constexpr int kCount = kColumns - kFirst;
-  RowPack sum[kRows][kCount] = {};
-  for (int i = 0; i < packs; ++i) {
-    RowPack left[kRows];
-    for (int r = 0; r < kRows; ++r) left[r] = columns[(kFirst + r) * packs + i];
-    for (int k = 0; k < kCount; ++k) {
-      const RowPack right = columns[(kFirst + k) * packs + i];
-      for (int r = 0; r < kRows && r <= k; ++r) sum[r][k] += left[r] * right;
-    }
-  }
-  for (int r = 0; r < kRows; ++r) {
-    for (int k = r; k < kCount; ++k) {
-      gram[(kFirst + r) * kColumns + kFirst + k] = SumOfLanes(sum[r][k]);
-    }
-  }
-}
-
-template <int kFirst, int kWidth, int kColumns>
-void AddGramPasses(const RowPack* columns, int packs, double* gram) {
-  if constexpr (kFirst < kWidth) {
-    constexpr int kRows = kWidth - kFirst > 1 ? ColumnsPerPass(kColumns - kFirst) : 1;
-    AddGramRows<kFirst, kRows, kColumns>(columns, packs, gram);
-    AddGramPasses<kFirst + kRows, kWidth, kColumns>(columns, packs, gram);
-  }
-}
-
-/// gram = the rows of [A|Q]'[A|Q] that belong to A, upper triangle; returns ||Q||^2.
-template <int kWidth, int kDimension>
-double BlockGram(const RowShape& shape, const RowBlock& block, double* gram) {
-  const int packs = block.stride / kPackLanes;
-  const RowPack* a = AsPacks(block.coefficients);
-  const RowPack* q = AsPacks(block.right_hand_sides);
-  // The kernel takes right-hand sides that follow the coefficients, as almost everywhere.
-  if (kWidth > 0 && q == a + shape.width * packs) {
-    if constexpr (kWidth > 0) AddGramPasses<0, kWidth, kWidth + kDimension>(a, packs, gram);
-  } else {
-    const int columns = shape.width + shape.dimension;
-    for (int j = 0; j < shape.width; ++j) {
-      double* row = gram + j * columns;
-      for (int k = j; k < shape.width; ++k) row[k] = DotPacks(a + j * packs, a + k * packs, packs);
-      for (int c = 0; c < shape.dimension; ++c) {
-        row[shape.width + c] = DotPacks(a + j * packs, q + c * packs, packs);
-      }
-    }
-  }
-  return DotPacks(q, q, shape.dimension * packs);
-}
-
-}  // namespace
-
 NormalBand::NormalBand(const RowShape& shape)
     : shape_(shape),
       band_(static_cast<std::size_t>(shape.num_columns) * shape.width, 0.0),
       right_hand_side_(Points::Zero(shape.num_columns, shape.dimension)),
-      gram_(static_cast<std::size_t>(shape.width) * (shape.width + shape.dimension)) {}
+      scratch_(shape) {}
 
-template <int kWidth, int kDimension>
-void NormalBand::Add(const RowBlock& block) {
-  double* const gram = gram_.data();
-  squared_norm_of_data_ += BlockGram<kWidth, kDimension>(shape_, block, gram);
-  const int width = kWidth > 0 ? kWidth : shape_.width;
-  const int d = kWidth > 0 ? kDimension : shape_.dimension;
+void NormalBand::Add(const RowBlock& block, Scratch* scratch) {
+  double* const gram = scratch->gram.data();
+  scratch->squared_norm_of_data += BlockGram(shape_, block, gram);
+  const int width = shape_.width;
+  const int d = shape_.dimension;
   for (int j = 0; j < width; ++j) {
     const int column = WrappedColumn(block.first_column + j);
     const double* row = gram + j * (width + d);
@@ -89,7 +30,7 @@ void NormalBand::Add(const RowBlock& block) {
 }
 
 template <int kWidth, int kDimension, int kRows>
-void NormalBand::AddFew(const RowBlock& block) {
+void NormalBand::AddFew(const RowBlock& block, Scratch* scratch) {
   // Zeros behind each row: the band's rows are then all updated at full width.
   double row[kRows][2 * kWidth] = {};
   double data[kRows][kDimension];
@@ -97,7 +38,7 @@ void NormalBand::AddFew(const RowBlock& block) {
     for (int j = 0; j < kWidth; ++j) row[i][j] = block.coefficients[j * kRowPack + i];
     for (int c = 0; c < kDimension; ++c) {
       data[i][c] = block.right_hand_sides[c * kRowPack + i];
-      squared_norm_of_data_ += data[i][c] * data[i][c];
+      scratch->squared_norm_of_data += data[i][c] * data[i][c];
     }
   }
   for (int j = 0; j < kWidth; ++j) {
@@ -117,20 +58,58 @@ void NormalBand::AddFew(const RowBlock& block) {
   }
 }
 
-void NormalBand::Consume(const RowBlock& block) {
+void NormalBand::Consume(const RowBlock& block, Scratch* scratch) {
+  if (block.num_rows >= kRowPack) return Add(block, scratch);
   WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
     if constexpr (width > 0) {
-      if (block.num_rows == 1) return AddFew<width, dimension, 1>(block);
-      if (block.num_rows == 2) return AddFew<width, dimension, 2>(block);
-      if (block.num_rows == 3) return AddFew<width, dimension, 3>(block);
+      if (block.num_rows == 1) return AddFew<width, dimension, 1>(block, scratch);
+      if (block.num_rows == 2) return AddFew<width, dimension, 2>(block, scratch);
+      if (block.num_rows == 3) return AddFew<width, dimension, 3>(block, scratch);
     }
-    Add<width, dimension>(block);
+    Add(block, scratch);
   });
 }
 
-NormalBand NormalBand::FromRows(const RowSource& source) {
+/// One thread's rows.
+class NormalBand::Part : public RowConsumer {
+ public:
+  explicit Part(NormalBand* band) : band_(*band), scratch_(band->shape_) {}
+  void Consume(const RowBlock& block) override { band_.Consume(block, &scratch_); }
+  double squared_norm_of_data() const { return scratch_.squared_norm_of_data; }
+
+ private:
+  NormalBand& band_;
+  Scratch scratch_;
+};
+
+void NormalBand::AddRows(const RowSource& source, int threads) {
+  const int parts = source.num_parts();
+  if (parts == 1) return source.Stream(this);
+  std::vector<double> squared_norms(static_cast<std::size_t>(parts));
+  const auto take_every = [&](int first, int step) {
+    for (int k = first; k < parts; k += step) {
+      Part part(this);
+      source.StreamPart(k, &part);
+      squared_norms[static_cast<std::size_t>(k)] = part.squared_norm_of_data();
+    }
+  };
+  // Neighbours have columns in common. With one thread too in this order: the same bits.
+  for (const int parity : {0, 1}) {
+    std::vector<std::thread> others;
+    for (int thread = 1; thread < std::min(threads, parts / 2); ++thread) {
+      others.emplace_back(take_every, parity + 2 * thread, 2 * threads);
+    }
+    take_every(parity, 2 * threads);
+    for (std::thread& other : others) other.join();
+  }
+  for (const double squared_norm : squared_norms) {
+    scratch_.squared_norm_of_data += squared_norm;
+  }
+}
+
+NormalBand NormalBand::FromRows(const RowSource& source, int threads) {
   NormalBand matrix(source.shape());
-  source.Stream(&matrix);
+  matrix.AddRows(source, threads);
   return matrix;
 }
 

@@ -16,9 +16,12 @@ namespace batten {
 class NormalBand : public RowConsumer {
  public:
   explicit NormalBand(const RowShape& shape);  ///< All zero.
-  void Consume(const RowBlock& block) override;
-  /// Zero, then one pass over `source`.
-  static NormalBand FromRows(const RowSource& source);
+  void Consume(const RowBlock& block) override { Consume(block, &scratch_); }
+  /// One pass over `source`, which `threads` >= 1 share if it has parts: the bits do not depend on
+  /// their number.
+  void AddRows(const RowSource& source, int threads);
+  /// Zero, then AddRows().
+  static NormalBand FromRows(const RowSource& source, int threads = 1);
 
   int size() const { return shape_.num_columns; }  // n
   int width() const { return shape_.width; }
@@ -26,8 +29,8 @@ class NormalBand : public RowConsumer {
   bool cyclic() const { return shape_.cyclic; }
   const std::vector<double>& band() const { return band_; }
   std::vector<double>& band() { return band_; }
-  const Points& right_hand_side() const { return right_hand_side_; }     // B, n x d
-  double squared_norm_of_data() const { return squared_norm_of_data_; }  // ||Q||^2
+  const Points& right_hand_side() const { return right_hand_side_; }             // B, n x d
+  double squared_norm_of_data() const { return scratch_.squared_norm_of_data; }  // ||Q||^2
 
   /// product = N V, n x d row-major each; must not overlap.
   void Multiply(const double* v, double* product) const;
@@ -39,13 +42,20 @@ class NormalBand : public RowConsumer {
   Eigen::MatrixXd ToDense() const;
 
  private:
-  /// Consume() for one width and dimension; kWidth < 0 takes both from the shape.
-  template <int kWidth, int kDimension>
-  void Add(const RowBlock& block);
+  class Part;
+  /// What a thread needs of its own.
+  struct Scratch {
+    explicit Scratch(const RowShape& shape)
+        : gram(static_cast<std::size_t>(shape.width) * (shape.width + shape.dimension)) {}
+    std::vector<double> gram;  // width x (width + dimension) of the block being consumed
+    double squared_norm_of_data = 0.0;
+  };
+  void Consume(const RowBlock& block, Scratch* scratch);
+  void Add(const RowBlock& block, Scratch* scratch);
   /// Consume() for a block of one pack with kRows rows, row by row into the band: sums over packs
   /// that are half empty cost more than the rows.
   template <int kWidth, int kDimension, int kRows>
-  void AddFew(const RowBlock& block);
+  void AddFew(const RowBlock& block, Scratch* scratch);
   /// Several entries of the band stand on one place of N.
   bool Overlaps() const;
   int WrappedColumn(int column) const {
@@ -63,8 +73,7 @@ class NormalBand : public RowConsumer {
   RowShape shape_;
   std::vector<double> band_;
   Points right_hand_side_;
-  double squared_norm_of_data_ = 0.0;
-  std::vector<double> gram_;  // width x (width + dimension) of the block being consumed
+  Scratch scratch_;
 };
 
 }  // namespace batten

@@ -24,7 +24,10 @@ std::vector<double> ChordLengths(bool closed, const Points& points, std::string*
       return {};
     }
   }
-  const double extent = (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+  Eigen::RowVectorXd low;
+  Eigen::RowVectorXd high;
+  FindBoundingBox(points, &low, &high);
+  const double extent = (high - low).maxCoeff();
   if (extent == 0.0) {
     *error = "all " + std::to_string(m) + " points are equal, chords have no length; use uniform";
     return {};
@@ -115,14 +118,28 @@ bool IsNondecreasing(const double* values, std::ptrdiff_t size) {
 }
 
 std::ptrdiff_t FirstNotBelow(const double* values, std::ptrdiff_t from, std::ptrdiff_t size,
-                             double bound) {
+                             double bound, std::ptrdiff_t guess) {
+  if (from >= size) return size;
+  std::ptrdiff_t at = std::min(guess, size - 1);
+  std::ptrdiff_t low = from;
+  std::ptrdiff_t high = at;
   std::ptrdiff_t step = 1;
-  while (from + step < size && values[from + step] < bound) {
-    from += step;
-    step *= 2;
+  if (values[at] < bound) {
+    while (at + step < size && values[at + step] < bound) {
+      at += step;
+      step *= 2;
+    }
+    low = at + 1;
+    high = std::min(at + step, size);
+  } else {
+    while (at - step >= from && !(values[at - step] < bound)) {
+      at -= step;
+      step *= 2;
+    }
+    low = std::max(at - step + 1, from);
+    high = at;
   }
-  const double* const end = values + std::min(from + step, size);
-  return std::lower_bound(values + from, end, bound) - values;
+  return std::lower_bound(values + low, values + high, bound) - values;
 }
 
 }  // namespace batten

@@ -30,9 +30,9 @@ std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed,
 bool IsNondecreasing(const double* values, std::ptrdiff_t size);
 
 /// First i >= from with values[i] >= bound, or size; values from `from` on do not decrease. Found
-/// in time of the logarithm of the distance.
+/// in time of the logarithm of the distance from `guess` >= from.
 std::ptrdiff_t FirstNotBelow(const double* values, std::ptrdiff_t from, std::ptrdiff_t size,
-                             double bound);
+                             double bound, std::ptrdiff_t guess);
 
 }  // namespace batten
 

@@ -48,6 +48,12 @@ class RowSource {
   virtual ~RowSource() = default;
   virtual RowShape shape() const = 0;
   virtual void Stream(RowConsumer* consumer) const = 0;
+
+  /// Parts that several threads can ask for at once, always the same: one, or an even number.
+  /// One after the other they are Stream(). Two even ones touch no column in common, nor do two
+  /// odd ones, so that each half can be summed without locks.
+  virtual int num_parts() const { return 1; }
+  virtual void StreamPart(int /*part*/, RowConsumer* consumer) const { Stream(consumer); }
 };
 
 }  // namespace batten

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <set>
 
 #include "cost_functions/interpolation.h"
+#include "splines/knot_rules.h"
 #include "splines/parameterization.h"
 #include "tests/cost_functions/example_fit.h"
 
@@ -142,6 +145,70 @@ TEST(GroupBySpan, ChangesNoEnergyAndNoGradient) {
   const double tolerance = 60 * 3 * kEpsilon;  // 60 squares, weights up to 3
   EXPECT_NEAR(EnergyAt(*a, x), EnergyAt(*b, x), tolerance);
   EXPECT_LT((GradientAt(*a, x) - GradientAt(*b, x)).norm(), 4 * tolerance);
+}
+
+/// Columns that the sites of a part touch.
+std::set<int> ColumnsOf(const BsplineBasis& basis, const Sites& sites, int first, int end) {
+  std::set<int> columns;
+  for (int g = first; g < end; ++g) {
+    for (int j = 0; j <= basis.degree(); ++j) {
+      columns.insert(basis.ControlPointIndex(sites.groups[g].span - basis.degree() + j));
+    }
+  }
+  return columns;
+}
+
+std::vector<double> SpreadOver(const BsplineBasis& basis, int count, double power) {
+  std::vector<double> parameters;
+  for (int i = 0; i < count; ++i) {
+    parameters.push_back(basis.domain_begin() +
+                         basis.domain_length() * std::pow((i + 0.5) / count, power));
+  }
+  return parameters;
+}
+
+TEST(CutIntoParts, LetsEveryOtherPartBeSummedWithoutLocks) {
+  constexpr int kSites = 200000;
+  for (const bool periodic : {false, true}) {
+    for (const int degree : {1, 3, 5}) {
+      for (const int n : {6, 13, 40, 1000}) {
+        for (const double power : {1.0, 4.0}) {
+          const BsplineBasis basis = BasisOf(
+              degree, periodic,
+              UniformKnots(degree, n, periodic ? EndKnots::kPeriodic : EndKnots::kEndInterpolating,
+                           0.0, 1.0));
+          const std::vector<double> parameters = SpreadOver(basis, kSites, power);
+          const Sites sites = SitesAt(parameters, basis);
+          const std::vector<int> begins = CutIntoParts(basis, sites);
+          const auto parts = static_cast<int>(begins.size()) - 1;
+          ASSERT_GE(parts, 1);
+          EXPECT_TRUE(parts == 1 || parts % 2 == 0);
+          if (n == 1000) {
+            EXPECT_GE(parts, 4);
+          }
+          EXPECT_EQ(begins.front(), 0);
+          EXPECT_EQ(begins.back(), static_cast<int>(sites.groups.size()));
+          for (const int parity : {0, 1}) {
+            std::set<int> touched;
+            for (int k = parity; parts > 1 && k < parts; k += 2) {
+              for (const int column : ColumnsOf(basis, sites, begins[k], begins[k + 1])) {
+                EXPECT_TRUE(touched.insert(column).second)
+                    << "column " << column << " of " << n << ", degree " << degree;
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(CutIntoParts, LeavesFewSitesTogether) {
+  const std::vector<double> parameters = {0.0, 0.5, 2.0, 2.5, 3.0};
+  const Sites sites = SitesAt(parameters, ThreeSpans());
+  EXPECT_THAT(CutIntoParts(ThreeSpans(), sites), ElementsAre(0, 2));
+  const Sites none = SitesAt({}, ThreeSpans());
+  EXPECT_THAT(CutIntoParts(ThreeSpans(), none), ElementsAre(0, 0));
 }
 
 }  // namespace

@@ -89,5 +89,24 @@ TEST(BandedCholeskySolver, LosesNoDigitThatTheStartHasRight) {
   EXPECT_LE((x - qr.x).norm(), (from_start.x - qr.x).norm() + 1e-9);
 }
 
+TEST(BandedCholeskySolver, GivesTheSameBitsWithAnyNumberOfThreads) {
+  // Enough points for several parts.
+  for (const bool closed : {false, true}) {
+    const auto problem = MakeFit(MakeNoisyLoop(150000, 2, 5), MakeSpec(3, closed, 300));
+    ASSERT_GT(problem->terms()[0].family->rows()->num_parts(), 3);
+    const auto solve = [&](int threads) {
+      TestContextOptions options;
+      options.threads = threads;
+      return SolverTrial(*problem, "banded_cholesky", options).x;
+    };
+    const Eigen::VectorXd x = solve(1);
+    EXPECT_TRUE(SameBits(x, solve(2)));
+    EXPECT_TRUE(SameBits(x, solve(5)));
+    // The parts are all of the rows.
+    const SolverTrial qr(*problem, "banded_qr");
+    EXPECT_LT((x - qr.x).cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
 }  // namespace
 }  // namespace batten

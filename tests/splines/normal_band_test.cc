@@ -87,6 +87,56 @@ TEST(NormalBand, LoopsOfFixedLengthAgreeWithThoseOfAnyLength) {
   }
 }
 
+/// Rows in an even number of parts, each over some neighbouring columns.
+struct RowsInParts : RowSource {
+  RowsInParts(const RowShape& shape_in, int columns_per_part) : whole(shape_in) {
+    std::mt19937 random(20240607);
+    std::uniform_int_distribution<int> entry(-3, 3);
+    const int last = whole.cyclic ? whole.num_columns : whole.num_columns - whole.width + 1;
+    for (int begin = 0; begin < last; begin += columns_per_part) {
+      parts.emplace_back(whole.num_columns, whole.width, whole.dimension, whole.cyclic);
+      for (int column = begin; column < std::min(begin + columns_per_part, last); ++column) {
+        for (int i = 0; i < 9; ++i) {
+          std::vector<double> coefficients(whole.width);
+          std::vector<double> right(whole.dimension);
+          for (double& value : coefficients) value = entry(random);
+          for (double& value : right) value = entry(random);
+          parts.back().Add(column, coefficients, right);
+        }
+      }
+    }
+  }
+  RowShape shape() const override { return whole; }
+  void Stream(RowConsumer* consumer) const override {
+    for (const ListedRows& part : parts) part.Stream(consumer);
+  }
+  int num_parts() const override { return static_cast<int>(parts.size()); }
+  void StreamPart(int part, RowConsumer* consumer) const override { parts[part].Stream(consumer); }
+
+  RowShape whole;
+  std::vector<ListedRows> parts;
+};
+
+TEST(NormalBand, IsTheSameSumByAnyNumberOfThreads) {
+  for (const bool cyclic : {false, true}) {
+    RowShape shape;
+    shape.num_columns = cyclic ? 80 : 83;
+    shape.width = 4;
+    shape.dimension = 2;
+    shape.cyclic = cyclic;
+    const RowsInParts rows(shape, 5);
+    ASSERT_EQ(rows.num_parts(), 16);
+    NormalBand whole(shape);
+    rows.Stream(&whole);
+    for (const int threads : {1, 2, 3, 8, 50}) {
+      const NormalBand band = NormalBand::FromRows(rows, threads);
+      EXPECT_EQ(band.band(), whole.band()) << threads << " threads";
+      EXPECT_EQ(band.right_hand_side(), whole.right_hand_side());
+      EXPECT_EQ(band.squared_norm_of_data(), whole.squared_norm_of_data());
+    }
+  }
+}
+
 TEST(NormalBand, TakesRightHandSidesThatStandApart) {
   struct MovingApart : RowConsumer {
     explicit MovingApart(NormalBand* band_in) : band(band_in) {}

@@ -178,5 +178,20 @@ TEST(Parameterization, NamesAreReadAsTheyAreWritten) {
   EXPECT_EQ(untouched, Parameterization::kCentripetal);
 }
 
+TEST(FirstNotBelow, FindsWhatAScanFindsWhateverIsGuessed) {
+  const std::vector<double> values = {0, 1, 1, 1, 2, 4, 4, 5, 7, 7, 7, 7, 8, 9, 9, 12};
+  const auto size = static_cast<std::ptrdiff_t>(values.size());
+  for (std::ptrdiff_t from = 0; from <= size; ++from) {
+    for (std::ptrdiff_t guess = from; guess <= size + 3; ++guess) {
+      for (const double bound : {-1.0, 0.0, 0.5, 1.0, 3.0, 4.0, 7.0, 9.0, 11.0, 12.0, 13.0}) {
+        std::ptrdiff_t expected = from;
+        while (expected < size && values[expected] < bound) ++expected;
+        EXPECT_EQ(FirstNotBelow(values.data(), from, size, bound, guess), expected)
+            << "from " << from << ", guess " << guess << ", bound " << bound;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace batten

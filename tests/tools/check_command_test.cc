@@ -136,7 +136,7 @@ TEST(Check, RefusesBadInput) {
   const std::string text = folder.Write("text.so", "no plugin");
   ExpectRefused(RunBatten({"check"}), {"found 0 files; allowed: one PLUGIN.so"});
   ExpectRefused(RunBatten({"check", text}), {text + ": is no shared object"});
-  ExpectRefused(RunBatten({"check", Plugin("forged_api_level")}), {"its API level is 2"});
+  ExpectRefused(RunBatten({"check", Plugin("forged_api_level")}), {"its API level is "});
   ExpectRefused(RunBatten({"check", Plugin("tension"), "--badge=" + (folder / "badge.png")}),
                 {"--badge: found ", "allowed: FILE.svg, FILE.json"});
   ExpectRefused(RunBatten({"check", Plugin("tension"), "--seconds_per_check=0"}),

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "solvers/batten_c.h"
 #include "tests/tools/plugin_files.h"
 #include "tests/tools/program.h"
 
@@ -132,7 +133,9 @@ TEST_P(RefusedPlugin, IsOneLineWithStatusTwo) {
 INSTANTIATE_TEST_SUITE_P(
     Card, RefusedPlugin,
     ::testing::Values(
-        Refused{"forged_api_level", {"its API level is 2, this program's is 1"}},
+        Refused{"forged_api_level",
+                {"its API level is " + std::to_string(BATTEN_API_LEVEL + 1) +
+                 ", this program's is " + std::to_string(BATTEN_API_LEVEL)}},
         Refused{"forged_card_size", {"its card size is ", "this program's is "}},
         Refused{"forged_compiler", {"its compiler is GCC 3, this program's is "}},
         Refused{"forged_no_compiler", {"its compiler is nothing, this program's is "}},
