@@ -50,12 +50,12 @@ double EnergyAtFootPoints(const CurveFit& fit, const Points& control_points) {
   return fit.data().weights.has_value() ? fit.data().weights->dot(squared) : squared.sum();
 }
 
-BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x) {
+BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x, double max_seconds) {
   RunSpec spec;
   spec.start = x;
   spec.gradient_tolerance = 0.0;
   spec.max_iterations = 2000;
-  spec.max_seconds = 10.0;
+  spec.max_seconds = max_seconds;
   spec.keep_trace = false;
   NameSpec newton;
   newton.name = "newton";

@@ -17,8 +17,10 @@ struct BasinEnd {
 };
 
 /// Follows a run's end x (all variables, scaled as inside) to the rounding floor by `newton`, so
-/// that ends in one basin become one curve.
-BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x);
+/// that ends in one basin become one curve; for `max_seconds` > 0 at most.
+inline constexpr double kMostPolishing = 10.0;
+BasinEnd Polish(const Problem& problem, const Eigen::VectorXd& x,
+                double max_seconds = kMostPolishing);
 
 /// Sum of w_i times the squared distance of data point i from the curve of these control points.
 double EnergyAtFootPoints(const CurveFit& fit, const Points& control_points);

@@ -74,9 +74,12 @@ std::vector<std::string> FlagsOf(const ComparisonRow& row, const RunSpec& spec) 
 }
 
 /// Where a run on a problem without direct answer leads: its curve, to be compared with others'.
-void AddEnd(const Problem& problem, const RunResult& run, Json* json) {
+void AddEnd(const Problem& problem, const RunResult& run, const RunSpec& spec, Json* json) {
   constexpr Eigen::Index kMostNumbers = 20'000;  // a line has to stay below 1 MiB
-  const BasinEnd end = Polish(problem, run.x);
+  // What is not on a solver's clock is not to take far longer than what is.
+  constexpr double kTimesTheRun = 2.0;
+  const BasinEnd end =
+      Polish(problem, run.x, std::min(kMostPolishing, kTimesTheRun * spec.max_seconds));
   if (!end.control_points.allFinite() || end.control_points.size() > kMostNumbers) return;
   (*json)["polished"] = end.polished;
   (*json)["polished_energy"] = end.energy;
@@ -184,7 +187,9 @@ std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
   json["disagreement"] = disagreement.empty() ? Json() : Json(disagreement);
   // Repetitions end alike, which is checked by their energies; one is polished.
   const bool is_first = cell.repetition == 1;
-  if (ran && is_first && !direct.known() && row.run.x.allFinite()) AddEnd(*problem, row.run, &json);
+  if (ran && is_first && !direct.known() && row.run.x.allFinite()) {
+    AddEnd(*problem, row.run, spec, &json);
+  }
   return DumpJson(json, -1);
 }
 
