@@ -110,8 +110,12 @@ void NoteTargets(BenchResults* results) {
 
 void AddNotes(BenchResults* results) {
   if (results->num_finished < results->num_cells) {
-    results->notes.push_back(std::to_string(results->num_cells - results->num_finished) + " of " +
-                             std::to_string(results->num_cells) + " cells are not finished");
+    results->notes.push_back(
+        std::to_string(results->num_cells - results->num_finished) + " of " +
+        std::to_string(results->num_cells) + " cells are not finished" +
+        (results->part.empty()
+             ? ""
+             : "; this is part " + results->part + " alone, whose table is made by batten merge"));
   }
   if (results->overlapped) {
     results->notes.emplace_back(

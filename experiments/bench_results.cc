@@ -27,6 +27,19 @@ std::string InstanceLabel(const nlohmann::json& row) {
   return text;
 }
 
+/// The part that all of a folder's sessions ran; empty where it is the whole, or they differ.
+std::string PartOf(const nlohmann::json& manifest) {
+  std::string part;
+  const auto sessions = manifest.find("sessions");
+  if (sessions == manifest.end()) return part;
+  for (const nlohmann::json& session : *sessions) {
+    const std::string here = TextAt(session, "shard");
+    if (here == "1/1" || (!part.empty() && here != part)) return "";
+    part = here;
+  }
+  return part;
+}
+
 /// Gathers rows to runs, and runs to instances.
 class Collector {
  public:
@@ -36,6 +49,7 @@ class Collector {
     results_.suite = TextAt(data_.manifest, "suite");
     results_.num_cells = data_.num_cells;
     results_.num_finished = data_.rows.size();
+    results_.part = PartOf(data_.manifest);
     for (const nlohmann::json& row : data_.rows) AddRow(row);
     AddTargets();
     for (std::size_t i = 0; i < results_.instances.size(); ++i) FindMinimum(i);

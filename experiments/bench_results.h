@@ -60,6 +60,7 @@ struct BenchResults {
   std::vector<BenchInstance> instances;
   std::vector<BenchRun> runs;  // instance by instance
   std::size_t num_cells = 0, num_finished = 0;
+  std::string part;         // "2/3": the folder is that of one part; empty: of all, or of several
   bool overlapped = false;  // some times are left out
   /// One sentence each: failures with their reason, claims that fail, solvers that disagree,
   /// repetitions that differ, solvers that are one method, targets below the rounding of E.

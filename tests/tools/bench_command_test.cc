@@ -134,12 +134,15 @@ TEST_F(Bench, PartsMergeToTheWhole) {
   for (const char* part : {"1", "2"}) {
     const std::string out = std::string("part_") + part;
     ASSERT_EQ(RunIn(suite, out, std::string("--shard=") + part + "/2").status, 0);
+    EXPECT_THAT(ReadFile(folder_ / (out + "/notes.md")),
+                HasSubstr(std::string("this is part ") + part + "/2 alone"));
   }
   for (int twice = 0; twice < 2; ++twice) {
     const Ended merged = RunBatten(
         {"merge", folder_ / "merged", folder_ / "part_1", folder_ / "part_2", "--nofigures"});
     ASSERT_EQ(merged.status, 0) << merged.err;
     EXPECT_THAT(merged.out, HasSubstr("60 cells, 0 missing"));
+    EXPECT_THAT(ReadFile(folder_ / "merged/notes.md"), ::testing::Not(HasSubstr("alone")));
     EXPECT_EQ(TimelessTable("merged"), TimelessTable("whole"));
     EXPECT_EQ(Keys("merged"), Keys("whole"));
   }
