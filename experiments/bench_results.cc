@@ -249,6 +249,19 @@ CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cos
   return costs;
 }
 
+namespace {
+
+/// Both apply, and where there are several minima both ends are known and share one.
+bool CanBeCompared(const BenchResults& results, const BenchRun& first, const BenchRun& second) {
+  for (const BenchRun* run : {&first, &second}) {
+    if (TextAt(*run->first, "stop") == "skipped") return false;
+    if (results.instances[run->instance].has_basins && run->basin < 0) return false;
+  }
+  return first.basin == second.basin;
+}
+
+}  // namespace
+
 CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost cost,
                     std::size_t first, std::size_t second) {
   using Key = std::pair<std::size_t, int>;  // instance, seed
@@ -259,7 +272,9 @@ CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost c
   }
   CostTable costs;
   for (const auto& [key, pair] : pairs) {
-    if (pair[0] == nullptr || pair[1] == nullptr || pair[0]->basin != pair[1]->basin) continue;
+    if (pair[0] == nullptr || pair[1] == nullptr || !CanBeCompared(results, *pair[0], *pair[1])) {
+      continue;
+    }
     if (!HasTarget(results.instances[key.first], results.targets[target])) continue;
     costs.emplace_back();
     for (const BenchRun* run : pair) {

@@ -78,8 +78,8 @@ BenchResults CollectResults(const BenchData& data);
 CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cost,
                   std::vector<std::size_t>* rows_of);
 
-/// Costs of two solvers on instances on which both end in one basin: a fast way to another minimum
-/// is neither won nor lost.
+/// Costs of two solvers on instances to which both apply and on which they end in one basin: a fast
+/// way to another minimum is neither won nor lost, nor is an end of unknown basin.
 CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost cost,
                     std::size_t first, std::size_t second);
 

@@ -134,7 +134,9 @@ CsvTable RunTable(const BenchResults& results) {
   for (const BenchRun& run : results.runs) {
     const nlohmann::json& row = *run.first;
     const BenchInstance& instance = results.instances[run.instance];
-    const MedianWithInterval seconds = BootstrapMedian(run.seconds, kBootstrapSeed);
+    MedianWithInterval seconds = BootstrapMedian(run.seconds, kBootstrapSeed);
+    // One run says nothing of the next.
+    if (run.seconds.size() < 2) seconds.low = seconds.high = std::nan("");
     const double energy = NumberAt(row, "energy");
     const double fall = instance.start_energy - instance.minimum_energy;
     const double gap =
@@ -247,6 +249,8 @@ bool WriteBenchTables(const BenchResults& results, const std::string& folder, Fi
                       " cells are finished. A solver that does not reach a target, or does not "
                       "apply, is charged 10 times the largest cost of its instance in the means of "
                       "solvers.md; instances on which nobody reaches it are left out of them. "
+                      "Evaluations are calls of E, g and J and products; a method that makes none, "
+                      "as a direct one, counts as one, and searches for feet are not among them. "
                       "Solvers that apply to no instance of a kind have no row there.\n\n";
   for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
   return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&

@@ -193,8 +193,9 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
   if (!ReadTraces(error) || !ReadLogs(error) || !ReadManifest(error)) return false;
   FindGroups();
   OrderedJson tables, pictures, pages;
-  // The rows of cells.jsonl once more.
-  const std::vector<std::string> skipped(has_cells ? 1 : 0, "table.csv");
+  // Of compare the rows of cells.jsonl once more; that of bench has basins and costs beside them.
+  const bool is_bench = std::filesystem::exists(folder_ + "/instances.jsonl");
+  const std::vector<std::string> skipped(has_cells && !is_bench ? 1 : 0, "table.csv");
   if (!ReadReportTables(folder_, skipped, limits_, &tables, &notes_, error) ||
       !ReadReportPictures(folder_, limits_, &pictures, &notes_, error) ||
       !ReadReproductionPages(folder_, &pages, error) ||

@@ -67,6 +67,26 @@ TEST(Basins, PolishingABasinAgainFindsTheSameCurve) {
   EXPECT_EQ(FindBasins(*problem, {end, again}), (std::vector<int>{0, 0}));
 }
 
+TEST(Basins, OfSeveralMethodsNearOneMinimumAreOne) {
+  const auto problem = LoadCatalogueProblem("dolphin_free");
+  const Eigen::VectorXd minimum = RunSolver(*problem, "foot_newton").x;
+  std::vector<BasinEnd> ends;
+  double offset = 1e-4;
+  for (const char* solver : {"lbfgs", "lm_schur", "newton", "tdm", "ceres_lbfgs"}) {
+    // Each from another place near it.
+    RunSpec spec;
+    spec.start = minimum;
+    for (double& value : spec.start) value += offset *= -0.999;
+    spec.max_iterations = 30;
+    RunResult run;
+    std::string error;
+    ASSERT_TRUE(Run(*problem, {solver, {}, nullptr}, spec, &run, &error)) << error;
+    ends.push_back(Polish(*problem, run.x));
+    EXPECT_TRUE(ends.back().polished) << solver;
+  }
+  EXPECT_EQ(FindBasins(*problem, ends), std::vector<int>(ends.size(), 0));
+}
+
 TEST(StartComparison, StartsDependOnSeedAndNumberAlone) {
   const auto problem = LoadCatalogueProblem("cat_free");
   std::string error;

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,8 +11,9 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-const char* const kFreeSolvers[] = {"foot_newton", "newton", "lm_schur", "varpro",       "tdm",
-                                    "sdm",         "pdm",    "gi",       "anderson:pdm", "lbfgs"};
+const char* const kFreeSolvers[] = {
+    "foot_newton", "newton",       "lm_schur",     "varpro", "tdm",         "sdm",     "pdm",
+    "gi",          "anderson:pdm", "anderson:tdm", "lbfgs",  "ceres_lbfgs", "ceres_lm"};
 
 std::vector<double> EnergiesOf(SolverTrial* trial) {
   std::vector<double> energies;
@@ -87,6 +89,9 @@ TEST(Anderson, NeverRaisesTheEnergyAtTheFeetOverPdm) {
     ExpectNeverRises(*problem, "anderson:pdm", 300);
     SolverTrial trial(*problem, "anderson:pdm", {300});
     EXPECT_LT(trial.context.Energy(trial.x), 0.2 * trial.context.Energy(problem->start())) << name;
+    // `batten reproduce anderson` reads the share of rejected steps out of it.
+    EXPECT_THAT(trial.context.notes().at("rejected steps"),
+                ::testing::MatchesRegex("[0-9]+ of [0-9]+, E would have risen"));
   }
 }
 
@@ -163,6 +168,29 @@ TEST(FreeFitsOfBadData, EndHonestlyFromACurveThatIsOnePoint) {
   FitSpec spec = MakeFreeSpec(3, true, 9);
   spec.start_points = Points::Constant(9, 2, 0.25);
   ExpectEndsHonestly(*MakeFit(MakeNoisyBean(40, 2, 605), spec));
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyFromACurveWithACusp) {
+  // Three control points in one place: C' = 0 at a knot of a cubic, where the curve turns back.
+  DataSet data = MakeNoisyBean(40, 2, 613);
+  data.weights.reset();
+  FitSpec spec = MakeFreeSpec(3, true, 9);
+  const auto plain = MakeFit(data, spec);
+  spec.start_points = plain->curve_fit()->ControlPoints(plain->start());
+  spec.start_points.row(4) = spec.start_points.row(3);
+  spec.start_points.row(5) = spec.start_points.row(3);
+  ExpectEndsHonestly(*MakeFit(data, spec));
+}
+
+TEST(FreeFitsOfBadData, RefuseAStartThatIsNoNumber) {
+  FitSpec spec = MakeFreeSpec(3, true, 9);
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    spec.start_points = Points::Constant(9, 2, 0.25);
+    spec.start_points(4, 1) = bad;
+    std::string error;
+    EXPECT_EQ(MakeFitProblem(MakeNoisyBean(40, 2, 614), spec, &error), nullptr);
+    EXPECT_THAT(error, ::testing::HasSubstr("allowed: 9 finite ones of dimension 2"));
+  }
 }
 
 TEST(FreeFitsOfBadData, EndHonestlyWithFewerPointsThanControlPoints) {

@@ -133,5 +133,16 @@ TEST_P(EverySolver, KeepsTheOrderOfPointsOrSaysThatItDoesNot) {
   if (!why.empty()) ExpectOneSentenceWithAWayOut(why, free_name());
 }
 
+TEST(BestOf, KeepsTheOrderOfPointsOverLbfgs) {
+  const auto problem = Zigzag(true, true);
+  ASSERT_EQ(WhyUnsupported(*problem, "best_of/starts=3/steps=20:lbfgs"), "");
+  const SolverTrial trial(*problem, "best_of/starts=3/steps=20:lbfgs", {60});
+  const Eigen::VectorXd t = problem->curve_fit()->Parameters(trial.all);
+  // Where the points go around once, all but one of the steps go forward.
+  int back = 0;
+  for (Eigen::Index i = 1; i < t.size(); ++i) back += t[i] < t[i - 1] ? 1 : 0;
+  EXPECT_LE(back, 1);
+}
+
 }  // namespace
 }  // namespace batten

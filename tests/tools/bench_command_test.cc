@@ -192,6 +192,35 @@ TEST_F(Bench, RegressFindsAWorseResult) {
   EXPECT_THAT(worse.err, HasSubstr("wave | own: cg: gradient_small before, diverged now"));
 }
 
+TEST_F(Bench, RegressDoesNotTakeABeliedClaimInAnyRepetition) {
+  ASSERT_EQ(RunIn(Suite(GoodSuite()), "before").status, 0);
+  std::filesystem::copy(folder_ / "before", folder_ / "now",
+                        std::filesystem::copy_options::recursive);
+  std::string edited;
+  for (const std::string& line : Lines(ReadFile(folder_ / "now/cells.jsonl"))) {
+    json row = json::parse(line);
+    if (row["solver"] == "cg" && row["problem"] == "wave" && row["repetition"] == 3) {
+      row["findings"] = {"claim_fails"};
+    }
+    edited += row.dump() + "\n";
+  }
+  folder_.Write("now/cells.jsonl", edited);
+  EXPECT_EQ(RunBatten({"regress", folder_ / "before", folder_ / "now"}).status, 4);
+}
+
+TEST_F(Bench, PairsLeaveOutInstancesToWhichOneDoesNotApply) {
+  json suite = GoodSuite();
+  suite["solvers"] = {"banded_cholesky", "cg", "foot_newton"};  // the last: free parameters only
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  const std::vector<std::string> lines = Lines(ReadFile(folder_ / "out/pairs.csv"));
+  int with_cg = 0;
+  for (const std::string& line : lines) {
+    EXPECT_THAT(line, ::testing::Not(HasSubstr("foot_newton")));
+    with_cg += line.find("banded_cholesky,cg,") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_GT(with_cg, 0);
+}
+
 TEST_F(Bench, RegressTestsTimesOfAllCells) {
   const std::string suite = Suite(GoodSuite());
   ASSERT_EQ(RunIn(suite, "before").status, 0);
