@@ -121,25 +121,19 @@ std::ptrdiff_t FirstNotBelow(const double* values, std::ptrdiff_t from, std::ptr
                              double bound, std::ptrdiff_t guess) {
   if (from >= size) return size;
   std::ptrdiff_t at = std::min(guess, size - 1);
-  std::ptrdiff_t low = from;
-  std::ptrdiff_t high = at;
   std::ptrdiff_t step = 1;
   if (values[at] < bound) {
     while (at + step < size && values[at + step] < bound) {
       at += step;
       step *= 2;
     }
-    low = at + 1;
-    high = std::min(at + step, size);
-  } else {
-    while (at - step >= from && !(values[at - step] < bound)) {
-      at -= step;
-      step *= 2;
-    }
-    low = std::max(at - step + 1, from);
-    high = at;
+    return std::lower_bound(values + at + 1, values + std::min(at + step, size), bound) - values;
   }
-  return std::lower_bound(values + low, values + high, bound) - values;
+  while (at - step >= from && !(values[at - step] < bound)) {
+    at -= step;
+    step *= 2;
+  }
+  return std::lower_bound(values + std::max(at - step + 1, from), values + at, bound) - values;
 }
 
 }  // namespace batten

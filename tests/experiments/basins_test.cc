@@ -80,7 +80,7 @@ TEST(Basins, OfSeveralMethodsNearOneMinimumAreOne) {
     spec.max_iterations = 30;
     RunResult run;
     std::string error;
-    ASSERT_TRUE(Run(*problem, {solver, {}, nullptr}, spec, &run, &error)) << error;
+    ASSERT_TRUE(batten::Run(*problem, {solver, {}, nullptr}, spec, &run, &error)) << error;
     ends.push_back(Polish(*problem, run.x));
     EXPECT_TRUE(ends.back().polished) << solver;
   }

@@ -19,8 +19,8 @@ struct IntegerBlock {
     matrix.resize(num_rows, shape.width + shape.dimension);
     for (int i = 0; i < num_rows; ++i) {
       for (int j = 0; j < matrix.cols(); ++j) {
-        double* const column = j < shape.width ? a + j * block.stride
-                                               : q + (j - shape.width) * block.stride;
+        double* const column =
+            j < shape.width ? a + j * block.stride : q + (j - shape.width) * block.stride;
         column[i] = matrix(i, j) = entry(random);
       }
     }
