@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "solvers/batten_c.h"
 #include "tests/tools/plugin_files.h"
 #include "tests/tools/program.h"
 
@@ -136,7 +137,8 @@ TEST(Check, RefusesBadInput) {
   const std::string text = folder.Write("text.so", "no plugin");
   ExpectRefused(RunBatten({"check"}), {"found 0 files; allowed: one PLUGIN.so"});
   ExpectRefused(RunBatten({"check", text}), {text + ": is no shared object"});
-  ExpectRefused(RunBatten({"check", Plugin("forged_api_level")}), {"its API level is "});
+  ExpectRefused(RunBatten({"check", Plugin("forged_api_level")}),
+                {"its API level is " + std::to_string(BATTEN_API_LEVEL + 1)});
   ExpectRefused(RunBatten({"check", Plugin("tension"), "--badge=" + (folder / "badge.png")}),
                 {"--badge: found ", "allowed: FILE.svg, FILE.json"});
   ExpectRefused(RunBatten({"check", Plugin("tension"), "--seconds_per_check=0"}),
