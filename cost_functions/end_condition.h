@@ -16,6 +16,7 @@ struct EndResidual {
   static constexpr bool kAffine = true;
   static constexpr int kDerivatives = kDerivative;
   static constexpr bool kOnlyHighestDerivative = true;
+  static constexpr bool kFewSites = true;
   static constexpr int NumResiduals(int dimension) { return dimension; }
 
   explicit EndResidual(std::shared_ptr<const Sites> ends) : ends_(std::move(ends)) {}

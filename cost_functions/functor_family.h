@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,13 @@
 #include "cost_functions/term.h"
 
 namespace batten {
+
+/// Whether a functor says (kFewSites) that it has one or two sites however many the data: compiled
+/// for sizes known at run time alone.
+template <typename Functor, typename = void>
+struct HasFewSites : std::false_type {};
+template <typename Functor>
+struct HasFewSites<Functor, std::enable_if_t<Functor::kFewSites>> : std::true_type {};
 
 /// Spreads one residual functor over its sites. A functor is a small copyable struct:
 ///
@@ -71,9 +79,22 @@ class FunctorFamily final : public BlockFamily, private RowSource {
   /// Rows are compiled one coordinate at a time: one residual each.
   static constexpr bool kMayHaveRows = Functor::kAffine && Functor::NumResiduals(1) == 1;
 
+  /// The kernel for sizes known at run time only. Besides terms of few sites it serves all that is
+  /// not asked for again and again: each pair of sizes takes the compiler seconds per term.
+  using AnyKernel = FunctorKernel<Functor, -1, -1>;
+  AnyKernel MakeAnyKernel() const { return AnyKernel(setting_, *sites_, functor_); }
+
   /// Calls body with the kernel of the sizes at hand: compiled for the common ones.
   template <typename Body>
   auto WithKernel(Body body) const {
+    if constexpr (HasFewSites<Functor>::value) {
+      return body(MakeAnyKernel());
+    } else {
+      return WithStaticKernel(body);
+    }
+  }
+  template <typename Body>
+  auto WithStaticKernel(Body body) const {
     const int p = setting_.basis->degree();
     const int d = setting_.dimension;
     if (setting_.use_static_sizes) {
@@ -85,7 +106,7 @@ class FunctorFamily final : public BlockFamily, private RowSource {
       if (p == 5 && d == 2) return body(FunctorKernel<Functor, 5, 2>(setting_, *sites_, functor_));
 #endif
     }
-    return body(FunctorKernel<Functor, -1, -1>(setting_, *sites_, functor_));
+    return body(MakeAnyKernel());
   }
 
   int SpanOf(int block) const {
@@ -106,48 +127,52 @@ class FunctorFamily final : public BlockFamily, private RowSource {
 
   bool DoResiduals(const Eigen::VectorXd& x, Eigen::VectorXd* residuals) const override {
     residuals->resize(static_cast<Eigen::Index>(size()) * num_residuals());
-    return WithKernel([&](const auto& kernel) {
-      return kernel.ForEachSite(
-          0, size(), [](const auto&) {},
-          [&](const auto& site, int s, const auto& window) {
-            return kernel.PlainResiduals(site, window, x.data(),
-                                         residuals->data() + s * num_residuals());
-          },
-          [](const auto&) {});
-    });
+    const AnyKernel kernel = MakeAnyKernel();
+    return kernel.ForEachSite(
+        0, size(), [](const auto&) {},
+        [&](const auto& site, int s, const auto& window) {
+          return kernel.PlainResiduals(site, window, x.data(),
+                                       residuals->data() + s * num_residuals());
+        },
+        [](const auto&) {});
   }
 
   bool DoJacobian(const Eigen::VectorXd& x, int first_row,
                   std::vector<Eigen::Triplet<double>>* entries) const override {
-    return WithKernel([&](const auto& kernel) {
-      std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
-      std::vector<double> jacobian(residuals.size() *
-                                   static_cast<std::size_t>(kernel.num_variables()));
-      return kernel.ForEachSite(
-          0, size(), [](const auto&) {},
-          [&](const auto& site, int s, const auto& window) {
-            if (!kernel.ResidualsAndJacobian(site, window, x.data(), residuals.data(),
-                                             jacobian.data())) {
-              return false;
-            }
-            for (std::size_t e = 0; e < jacobian.size(); ++e) {
-              const int row = static_cast<int>(e) / kernel.num_variables();
-              const int v = static_cast<int>(e) % kernel.num_variables();
-              entries->emplace_back(first_row + s * num_residuals() + row,
-                                    window.offset[v / kernel.dimension()] + v % kernel.dimension(),
-                                    jacobian[e]);
-            }
-            return true;
-          },
-          [](const auto&) {});
-    });
+    const AnyKernel kernel = MakeAnyKernel();
+    std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
+    std::vector<double> jacobian(residuals.size() *
+                                 static_cast<std::size_t>(kernel.num_variables()));
+    return kernel.ForEachSite(
+        0, size(), [](const auto&) {},
+        [&](const auto& site, int s, const auto& window) {
+          if (!kernel.ResidualsAndJacobian(site, window, x.data(), residuals.data(),
+                                           jacobian.data())) {
+            return false;
+          }
+          for (std::size_t e = 0; e < jacobian.size(); ++e) {
+            const int row = static_cast<int>(e) / kernel.num_variables();
+            const int v = static_cast<int>(e) % kernel.num_variables();
+            entries->emplace_back(first_row + s * num_residuals() + row,
+                                  window.offset[v / kernel.dimension()] + v % kernel.dimension(),
+                                  jacobian[e]);
+          }
+          return true;
+        },
+        [](const auto&) {});
   }
 
   bool DoAddHessianTimes(const Eigen::VectorXd& x, const Eigen::VectorXd& direction,
                          Eigen::VectorXd* product) const override {
-    return WithKernel([&](const auto& kernel) {
+    const auto add = [&](const auto& kernel) {
       return kernel.AddHessianTimes(x.data(), direction.data(), weight(), loss(), product->data());
-    });
+    };
+    // An affine residual has its normal band, and comes here under a loss alone.
+    if constexpr (Functor::kAffine) {
+      return add(MakeAnyKernel());
+    } else {
+      return WithKernel(add);
+    }
   }
 
   RowShape shape() const override {
@@ -181,31 +206,29 @@ class FunctorFamily final : public BlockFamily, private RowSource {
   bool RowsAreAlike() const {
     const int d = setting_.dimension;
     if (num_residuals() != d || size() == 0) return false;
-    return WithKernel([&](const auto& kernel) {
-      const int num_variables = kernel.num_variables();
-      std::vector<double> residuals(static_cast<std::size_t>(d));
-      std::vector<double> jacobian(static_cast<std::size_t>(d * num_variables));
-      const Eigen::VectorXd x = Eigen::VectorXd::Zero(setting_.control_point_offset +
-                                                      setting_.basis->num_control_points() * d);
-      for (const int block : {0, size() - 1}) {
-        const int span = SpanOf(block);
-        const auto site = kernel.MakeSite(block, span);
-        const auto window = kernel.MakeWindow(span);
-        if (!kernel.ResidualsAndJacobian(site, window, x.data(), residuals.data(),
-                                         jacobian.data()) ||
-            !kernel.PlainResiduals(site, window, x.data(), residuals.data()) ||
-            !IsSeenAlikeAlone(site, residuals)) {
-          return false;
-        }
-        for (int r = 0; r < d; ++r) {
-          for (int v = 0; v < num_variables; ++v) {
-            const double alike = v % d == r ? jacobian[static_cast<std::size_t>(v - r)] : 0.0;
-            if (jacobian[static_cast<std::size_t>(r * num_variables + v)] != alike) return false;
-          }
+    const AnyKernel kernel = MakeAnyKernel();
+    const int num_variables = kernel.num_variables();
+    std::vector<double> residuals(static_cast<std::size_t>(d));
+    std::vector<double> jacobian(static_cast<std::size_t>(d * num_variables));
+    const Eigen::VectorXd x = Eigen::VectorXd::Zero(setting_.control_point_offset +
+                                                    setting_.basis->num_control_points() * d);
+    for (const int block : {0, size() - 1}) {
+      const int span = SpanOf(block);
+      const auto site = kernel.MakeSite(block, span);
+      const auto window = kernel.MakeWindow(span);
+      if (!kernel.ResidualsAndJacobian(site, window, x.data(), residuals.data(), jacobian.data()) ||
+          !kernel.PlainResiduals(site, window, x.data(), residuals.data()) ||
+          !IsSeenAlikeAlone(site, residuals)) {
+        return false;
+      }
+      for (int r = 0; r < d; ++r) {
+        for (int v = 0; v < num_variables; ++v) {
+          const double alike = v % d == r ? jacobian[static_cast<std::size_t>(v - r)] : 0.0;
+          if (jacobian[static_cast<std::size_t>(r * num_variables + v)] != alike) return false;
         }
       }
-      return true;
-    });
+    }
+    return true;
   }
 
   /// Whether the functor finds the same residuals at control points of zero when it sees each
