@@ -12,6 +12,7 @@
 #include "cost_functions/site.h"
 #include "splines/basis_derivative.h"
 #include "splines/basis_functions.h"
+#include "splines/processor.h"
 
 namespace batten {
 
@@ -34,12 +35,39 @@ class FunctorRows {
   /// Hands out the rows root_factor * (A, Q) of groups first_group..end_group-1, span by
   /// span.
   void Stream(double root_factor, int first_group, int end_group, RowConsumer* consumer) const {
-    Form variables[kOrderStorage];
-    const Form* points[kOrderStorage];
+#if BATTEN_HAS_AVX2_KERNELS
+    // Terms with derivatives have few sites in a span, seldom a pack of them.
+    if constexpr (kStatic && Functor::kDerivatives == 0) {
+      if (HasAvx2()) return StreamIn<WidePack>(root_factor, first_group, end_group, consumer);
+    }
+#endif
+    StreamIn<Pack>(root_factor, first_group, end_group, consumer);
+  }
+  /// The same bits on processors without AVX2, and in tests on others.
+  void StreamOnAnyProcessor(double root_factor, int first_group, int end_group,
+                            RowConsumer* consumer) const {
+    StreamIn<Pack>(root_factor, first_group, end_group, consumer);
+  }
+
+ private:
+  static constexpr bool kStatic = P >= 0;
+  static constexpr int kOrderStorage = kStatic ? P + 1 : kMaxOrder;
+  static constexpr int kDimensionStorage = kStatic ? D : kMaxDimension;
+  template <typename PackType>
+  using Form = AffineForm<PackType, kOrderStorage>;
+  using PlainForm = AffineForm<double, kOrderStorage>;
+
+  int order() const { return kStatic ? P + 1 : basis_.order(); }
+  int dimension() const { return kStatic ? D : setting_.dimension; }
+
+  template <typename PackType>
+  void StreamIn(double root_factor, int first_group, int end_group, RowConsumer* consumer) const {
+    Form<PackType> variables[kOrderStorage];
+    const Form<PackType>* points[kOrderStorage];
     PlainForm few_variables[kOrderStorage];
     const PlainForm* few_points[kOrderStorage];
     for (int j = 0; j < order(); ++j) {
-      variables[j] = Form::Variable(j);
+      variables[j] = Form<PackType>::Variable(j);
       points[j] = &variables[j];
       few_variables[j] = PlainForm::Variable(j);
       few_points[j] = &few_variables[j];
@@ -52,7 +80,7 @@ class FunctorRows {
         consumer->Consume(FillFew(group, root_factor, few_points, rows));
         continue;
       }
-      const SpanBasis<P, Pack> span_basis(basis_.degree(), basis_.knots().data(), group.span);
+      const SpanBasis<P, PackType> span_basis(basis_.degree(), basis_.knots().data(), group.span);
       for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
         RowBlock block;
         block.first_column = basis_.ControlPointIndex(group.span - basis_.degree());
@@ -66,16 +94,6 @@ class FunctorRows {
       }
     }
   }
-
- private:
-  static constexpr bool kStatic = P >= 0;
-  static constexpr int kOrderStorage = kStatic ? P + 1 : kMaxOrder;
-  static constexpr int kDimensionStorage = kStatic ? D : kMaxDimension;
-  using Form = AffineForm<Pack, kOrderStorage>;
-  using PlainForm = AffineForm<double, kOrderStorage>;
-
-  int order() const { return kStatic ? P + 1 : basis_.order(); }
-  int dimension() const { return kStatic ? D : setting_.dimension; }
 
   /// The block of a span with fewer sites than a pack has, one after the other in plain numbers: a
   /// smoothing spline has one or two in each of its spans, for which packs cost twice as much.
@@ -126,9 +144,10 @@ class FunctorRows {
   }
 
   /// Products with weights and factors that are 1 are left out when compiling, not when running.
-  void FillRows(const SpanBasis<P, Pack>& span_basis, int span, const Form* const* points,
-                int begin, const RowBlock& block, double root_factor, double* coefficients,
-                double* right_hand_sides) const {
+  template <typename PackType>
+  void FillRows(const SpanBasis<P, PackType>& span_basis, int span,
+                const Form<PackType>* const* points, int begin, const RowBlock& block,
+                double root_factor, double* coefficients, double* right_hand_sides) const {
     if (sites_.weights == nullptr) {
       FillRowsWith<false>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
     } else {
@@ -142,9 +161,24 @@ class FunctorRows {
   /// Flattened: with the basis and the functor called for each pack, rows cost twice as much.
   template <bool kWeighted>
   __attribute__((flatten)) void FillRowsWith(const SpanBasis<P, Pack>& span_basis, int span,
-                                             const Form* const* points, int begin,
+                                             const Form<Pack>* const* points, int begin,
                                              const RowBlock& block, double* coefficients,
                                              double* right_hand_sides) const {
+    FillPacks<kWeighted>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+  }
+#if BATTEN_HAS_AVX2_KERNELS
+  template <bool kWeighted>
+  __attribute__((flatten, target("avx2"))) void FillRowsWith(
+      const SpanBasis<P, WidePack>& span_basis, int span, const Form<WidePack>* const* points,
+      int begin, const RowBlock& block, double* coefficients, double* right_hand_sides) const {
+    FillPacks<kWeighted>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+  }
+#endif
+
+  template <bool kWeighted, typename PackType>
+  inline __attribute__((always_inline)) void FillPacks(
+      const SpanBasis<P, PackType>& span_basis, int span, const Form<PackType>* const* points,
+      int begin, const RowBlock& block, double* coefficients, double* right_hand_sides) const {
     // Whole packs of neighbours in memory first; then the rest, a lane at a time.
     const int in_a_row = sites_.order.empty() ? block.num_rows / kRowPack * kRowPack : 0;
     for (int first = 0; first < in_a_row; first += kRowPack) {
@@ -163,27 +197,27 @@ class FunctorRows {
   }
 
   /// Entries of the sites first..first+kRowPack-1; those past `last` repeat it.
-  template <bool kInARow>
-  Pack PackOf(const double* source, std::ptrdiff_t step, int first, int last) const {
+  template <typename PackType, bool kInARow>
+  PackType Collect(const double* source, std::ptrdiff_t step, int first, int last) const {
     if constexpr (kInARow) {
-      return Pack::Gather(source + first * step, step);
+      return PackType::Gather(source + first * step, step);
     } else {
       std::ptrdiff_t item[kRowPack];
       for (int i = 0; i < kRowPack; ++i) item[i] = sites_.item(std::min(first + i, last));
-      return Pack::Gather(source, item, step);
+      return PackType::Gather(source, item, step);
     }
   }
 
   /// The rows of kRowPack sites. Coordinate by coordinate the functor sees a curve with one
   /// coordinate, whose control point j is the variable x_j.
-  template <bool kInARow, bool kWeighted>
-  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, Pack>& span_basis,
-                                                      int span, const Form* const* points,
+  template <bool kInARow, bool kWeighted, typename PackType>
+  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, PackType>& span_basis,
+                                                      int span, const Form<PackType>* const* points,
                                                       int first, int last, int stride,
                                                       double* coefficients,
                                                       double* right_hand_sides) const {
-    Site<Pack, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
-    const Pack t = PackOf<kInARow>(sites_.parameters, 1, first, last);
+    Site<PackType, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
+    const auto t = Collect<PackType, kInARow>(sites_.parameters, 1, first, last);
     if constexpr (Functor::kDerivatives == 0) {
       span_basis.Evaluate(t, site.mutable_basis());
     } else if constexpr (AsksForOneDerivative<Functor>::value) {
@@ -194,19 +228,19 @@ class FunctorRows {
       EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span, t,
                                   Functor::kDerivatives, site.mutable_basis());
     }
-    Pack root(1.0);
+    PackType root(1.0);
     if constexpr (kWeighted) {
-      root = PackOf<kInARow>(sites_.weights, 1, first, last);
+      root = Collect<PackType, kInARow>(sites_.weights, 1, first, last);
       root = root.Map([](double weight) { return std::sqrt(weight); });
     }
     site.set_root_weight(root);
     site.set_variables(points);
-    Form result;
+    Form<PackType> result;
     for (int c = 0; c < dimension(); ++c) {
-      Pack point(0.0);
+      PackType point(0.0);
       if (sites_.points != nullptr) {
         const double center = setting_.Origin(sites_, c);
-        point = (PackOf<kInARow>(sites_.points + c, dimension(), first, last) - center) *
+        point = (Collect<PackType, kInARow>(sites_.points + c, dimension(), first, last) - center) *
                 setting_.scale;
       }
       site.mutable_point()[0] = point;

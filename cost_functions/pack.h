@@ -7,29 +7,39 @@
 
 namespace batten {
 
-/// kRowPack doubles that are computed with as one: the scalar in which affine residuals are
-/// evaluated for several sites at a time. Made of the widest vectors every x86-64 has; with wider
-/// ones, where the processor has them, putting them together costs twice what they save.
-struct Pack {
-  static constexpr int kLaneSize = 2;
+/// kRowPack doubles that are computed with as one, in vectors of kWidth: the scalar in which affine
+/// residuals are evaluated for several sites at a time. The same bits for any width.
+template <int kWidth>
+struct PackOf {
+  static constexpr int kLaneSize = kWidth;
   static constexpr int kLanes = kRowPack / kLaneSize;
   typedef double Lane __attribute__((vector_size(kLaneSize * sizeof(double))));
 
-  Pack() = default;
-  explicit Pack(double value) {
+  PackOf() = default;
+  explicit PackOf(double value) {
     for (Lane& lane : lanes) lane = value - Lane{};
   }
+  // Copied vector by vector: as so many bytes GCC copies it in halves, and what is read whole then
+  // waits for them. It also keeps packs out of registers where a call is left, which code for
+  // another processor would not read.
+  PackOf(const PackOf& other) {
+    for (int l = 0; l < kLanes; ++l) lanes[l] = other.lanes[l];
+  }
+  PackOf& operator=(const PackOf& other) {
+    for (int l = 0; l < kLanes; ++l) lanes[l] = other.lanes[l];
+    return *this;
+  }
   /// Entry i from source[i * step].
-  static Pack Gather(const double* source, std::ptrdiff_t step) {
-    Pack pack;
+  static PackOf Gather(const double* source, std::ptrdiff_t step) {
+    PackOf pack;
     for (int l = 0; l < kLanes; ++l) {
       for (int i = 0; i < kLaneSize; ++i) pack.lanes[l][i] = source[(l * kLaneSize + i) * step];
     }
     return pack;
   }
   /// Entry i from source[items[i] * step].
-  static Pack Gather(const double* source, const std::ptrdiff_t* items, std::ptrdiff_t step) {
-    Pack pack;
+  static PackOf Gather(const double* source, const std::ptrdiff_t* items, std::ptrdiff_t step) {
+    PackOf pack;
     for (int l = 0; l < kLanes; ++l) {
       for (int i = 0; i < kLaneSize; ++i) {
         pack.lanes[l][i] = source[items[l * kLaneSize + i] * step];
@@ -41,44 +51,50 @@ struct Pack {
     for (int l = 0; l < kLanes; ++l) reinterpret_cast<Lane*>(aligned_target)[l] = lanes[l];
   }
   template <typename Function>
-  Pack Map(Function function) const {
-    Pack result;
+  PackOf Map(Function function) const {
+    PackOf result;
     for (int l = 0; l < kLanes; ++l) {
       for (int i = 0; i < kLaneSize; ++i) result.lanes[l][i] = function(lanes[l][i]);
     }
     return result;
   }
 
-  template <typename Operation>
-  static Pack Combine(const Pack& a, const Pack& b, Operation operation) {
-    Pack result;
-    for (int l = 0; l < kLanes; ++l) result.lanes[l] = operation(a.lanes[l], b.lanes[l]);
+  friend PackOf operator+(const PackOf& a, const PackOf& b) {
+    PackOf result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] + b.lanes[l];
     return result;
   }
+  friend PackOf operator-(const PackOf& a, const PackOf& b) {
+    PackOf result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] - b.lanes[l];
+    return result;
+  }
+  friend PackOf operator*(const PackOf& a, const PackOf& b) {
+    PackOf result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] * b.lanes[l];
+    return result;
+  }
+  friend PackOf operator/(const PackOf& a, const PackOf& b) {
+    PackOf result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] / b.lanes[l];
+    return result;
+  }
+  friend PackOf operator-(const PackOf& a) { return PackOf(0.0) - a; }
+  friend PackOf operator+(const PackOf& a, double b) { return a + PackOf(b); }
+  friend PackOf operator-(const PackOf& a, double b) { return a - PackOf(b); }
+  friend PackOf operator*(const PackOf& a, double b) { return a * PackOf(b); }
+  friend PackOf operator/(const PackOf& a, double b) { return a / PackOf(b); }
+  friend PackOf operator+(double a, const PackOf& b) { return PackOf(a) + b; }
+  friend PackOf operator-(double a, const PackOf& b) { return PackOf(a) - b; }
+  friend PackOf operator*(double a, const PackOf& b) { return PackOf(a) * b; }
 
   Lane lanes[kLanes];
 };
 
-inline Pack operator+(const Pack& a, const Pack& b) {
-  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x + y; });
-}
-inline Pack operator-(const Pack& a, const Pack& b) {
-  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x - y; });
-}
-inline Pack operator*(const Pack& a, const Pack& b) {
-  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x * y; });
-}
-inline Pack operator/(const Pack& a, const Pack& b) {
-  return Pack::Combine(a, b, [](Pack::Lane x, Pack::Lane y) { return x / y; });
-}
-inline Pack operator-(const Pack& a) { return Pack(0.0) - a; }
-inline Pack operator+(const Pack& a, double b) { return a + Pack(b); }
-inline Pack operator-(const Pack& a, double b) { return a - Pack(b); }
-inline Pack operator*(const Pack& a, double b) { return a * Pack(b); }
-inline Pack operator/(const Pack& a, double b) { return a / Pack(b); }
-inline Pack operator+(double a, const Pack& b) { return Pack(a) + b; }
-inline Pack operator-(double a, const Pack& b) { return Pack(a) - b; }
-inline Pack operator*(double a, const Pack& b) { return Pack(a) * b; }
+/// Of the widest vectors every x86-64 has.
+using Pack = PackOf<2>;
+/// Of AVX2's, for functions that are compiled for it.
+using WidePack = PackOf<4>;
 
 }  // namespace batten
 

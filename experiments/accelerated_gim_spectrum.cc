@@ -1,6 +1,5 @@
 #include <glog/logging.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include "experiments/experiment_runs.h"
 #include "solvers/lanczos.h"
 #include "solvers/normal_spectrum.h"
+#include "splines/dense_eigenvalues.h"
 
 namespace batten {
 namespace {
@@ -102,8 +102,7 @@ Eigen::VectorXd EigenvaluesOfNormalMatrix(const Problem& problem, bool unit_diag
     scaled.Multiply(unit.data(), column.data());
     for (int k = 0; k < n; ++k) matrix(k, j) = column[static_cast<Eigen::Index>(k) * d];
   }
-  const Eigen::VectorXd all =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd all = DecomposeSymmetric(matrix).values;
   const double null = n * std::numeric_limits<double>::epsilon() * all.maxCoeff();
   return all.tail((all.array() > null).count());
 }

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +6,7 @@
 
 #include "problems/fit_problem.h"
 #include "splines/closest_point.h"
+#include "splines/dense_eigenvalues.h"
 
 namespace batten {
 namespace {
@@ -22,9 +22,9 @@ Points AroundTheData(const BsplineBasis& basis, const Points& data, bool circle)
   const Points centred = data.rowwise() - mean;
   const Eigen::MatrixXd covariance =
       centred.transpose() * centred / static_cast<double>(data.rows());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
-  const double wide = std::sqrt(2.0 * std::max(axes.eigenvalues()[d - 1], 0.0));
-  const double narrow = std::sqrt(2.0 * std::max(axes.eigenvalues()[d - 2], 0.0));
+  const SymmetricEigen axes = DecomposeSymmetric(covariance);
+  const double wide = std::sqrt(2.0 * std::max(axes.values[d - 1], 0.0));
+  const double narrow = std::sqrt(2.0 * std::max(axes.values[d - 2], 0.0));
   const double mid = std::sqrt(0.5 * (wide * wide + narrow * narrow));
   const int n = basis.num_control_points();
   Points unit(n, 2);
@@ -43,9 +43,8 @@ Points AroundTheData(const BsplineBasis& basis, const Points& data, bool circle)
   if (radius > kSmallest) unit /= radius;
   Points start(n, d);
   for (int j = 0; j < n; ++j) {
-    start.row(j) =
-        mean + unit(j, 0) * (circle ? mid : wide) * axes.eigenvectors().col(d - 1).transpose() +
-        unit(j, 1) * (circle ? mid : narrow) * axes.eigenvectors().col(d - 2).transpose();
+    start.row(j) = mean + unit(j, 0) * (circle ? mid : wide) * axes.vectors.col(d - 1).transpose() +
+                   unit(j, 1) * (circle ? mid : narrow) * axes.vectors.col(d - 2).transpose();
   }
   return start;
 }

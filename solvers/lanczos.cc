@@ -1,10 +1,11 @@
 #include "solvers/lanczos.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "splines/dense_eigenvalues.h"
 
 namespace batten {
 namespace {
@@ -14,21 +15,21 @@ namespace {
 bool ReadRitzValues(const std::vector<double>& diagonal, const std::vector<double>& off_diagonal,
                     Spectrum* spectrum) {
   const auto k = static_cast<Eigen::Index>(diagonal.size());
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), k),
-                                Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), k - 1));
-  if (solver.info() != Eigen::Success) return false;
+  const SymmetricEigen small =
+      DecomposeTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), k),
+                           Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), k - 1));
+  if (!small.values.allFinite()) return false;
   const double beta = off_diagonal.back();
-  const Eigen::VectorXd& values = solver.eigenvalues();
+  const Eigen::VectorXd& values = small.values;
   // Rounding brings in what the start does not reach, and a Ritz value that falls to zero with it.
   constexpr double kRoundings = 64.0;
   const double null = kRoundings * std::numeric_limits<double>::epsilon() * values[k - 1];
   Eigen::Index first = 0;
   while (first < k - 1 && values[first] <= null) ++first;
   spectrum->smallest = values[first];
-  spectrum->smallest_error = beta * std::abs(solver.eigenvectors()(k - 1, first));
+  spectrum->smallest_error = beta * std::abs(small.vectors(k - 1, first));
   spectrum->largest = values[k - 1];
-  spectrum->largest_error = beta * std::abs(solver.eigenvectors()(k - 1, k - 1));
+  spectrum->largest_error = beta * std::abs(small.vectors(k - 1, k - 1));
   return true;
 }
 

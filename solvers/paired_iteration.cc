@@ -1,6 +1,5 @@
 #include "solvers/paired_iteration.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "problems/fit_problem.h"
 #include "solvers/lanczos.h"
+#include "splines/dense_eigenvalues.h"
 
 namespace batten {
 namespace {
@@ -102,7 +102,7 @@ double SpectralRadiusOf(const std::function<Points(const Points&)>& apply, int n
   constexpr int kLargestDense = 300;
   if (num_points <= kLargestDense) {
     const Eigen::MatrixXd matrix = apply(Points::Identity(num_points, num_points));
-    return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
+    return EigenvalueSizes(matrix).maxCoeff();
   }
   Points v = RandomStart(num_points, seed).normalized();
   constexpr int kWarmUp = 200;

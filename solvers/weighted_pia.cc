@@ -1,11 +1,11 @@
 #include "solvers/weighted_pia.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
 #include "solvers/lanczos.h"
+#include "splines/dense_eigenvalues.h"
 
 namespace batten {
 
@@ -43,12 +43,7 @@ std::optional<Outcome> WeightedPiaSolver::Prepare() {
 double WeightedPiaSolver::SmallestEigenvalue() const {
   const Eigen::SparseMatrix<double> a = rows().ToSparse();
   constexpr int kLargestDense = 100;
-  if (a.rows() <= kLargestDense) {
-    return Eigen::EigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(a), false)
-        .eigenvalues()
-        .cwiseAbs()
-        .minCoeff();
-  }
+  if (a.rows() <= kLargestDense) return EigenvalueSizes(Eigen::MatrixXd(a)).minCoeff();
   // Inverse iteration. Close eigenvalues leave its vector undecided but hardly its growth.
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(a);
   if (factor.info() != Eigen::Success) return 0.0;

@@ -1,12 +1,7 @@
 #include "splines/block_gram.h"
 
+#include "splines/processor.h"
 #include "splines/row_pack.h"
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define BATTEN_HAS_AVX2_KERNELS 1
-#else
-#define BATTEN_HAS_AVX2_KERNELS 0
-#endif
 
 namespace batten {
 namespace {
@@ -26,11 +21,6 @@ namespace with_avx2 {
 #undef BATTEN_GRAM_LANES
 }  // namespace with_avx2
 #pragma GCC pop_options
-
-bool HasAvx2() {
-  static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return has;
-}
 #endif
 
 /// gram by kernel(width, dimension), which takes right-hand sides that follow the coefficients, as
