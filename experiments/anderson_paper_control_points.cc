@@ -13,7 +13,7 @@ constexpr int kStep = 10;
 bool RunControlPoints(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
   CsvTable& table = (*tables)[""] = CsvTable(GrowthColumns());
   std::vector<PaperExample> examples;
-  if (!PaperExamples(&examples, error)) return false;
+  if (!ShownExamples(&examples, error)) return false;
   constexpr std::size_t kNoisy = 2;
   const Points& points = examples[kNoisy].points;
   for (int n = kFewest; n <= kMost; n += kStep) {

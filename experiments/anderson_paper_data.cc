@@ -70,11 +70,25 @@ FitSpec FreeSpec(int control_points) {
 }  // namespace
 
 const std::vector<std::string>& PaperExampleNames() {
+  static const auto& names = *new std::vector<std::string>{"smooth", "sharp", "noisy"};
+  return names;
+}
+
+const std::vector<std::string>& ShownExampleNames() {
   static const auto& names = *new std::vector<std::string>{"smooth", "sharp", "noisy", "crawling"};
   return names;
 }
 
-bool PaperExamples(std::vector<PaperExample>* examples, std::string* error) {
+bool IsPaperExample(const std::string& name) {
+  const std::vector<std::string>& names = PaperExampleNames();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string ExampleLabel(const std::string& name) {
+  return IsPaperExample(name) ? name : name + " (ours)";
+}
+
+bool ShownExamples(std::vector<PaperExample>* examples, std::string* error) {
   examples->clear();
   for (const Recipe& recipe : kRecipes) {
     PaperExample example;

@@ -9,8 +9,22 @@
 namespace batten {
 namespace {
 
-constexpr const char* kSolvers[] = {kJointLbfgs, kAndersonPdm,  "pdm",    "tdm",
-                                    "sdm",       "foot_newton", "newton", "lm_schur"};
+// Without `best_of`, whose iterations are ends of runs.
+constexpr const char* kSolvers[] = {kJointLbfgs,
+                                    kAndersonPdm,
+                                    "pdm",
+                                    "tdm",
+                                    "sdm",
+                                    "foot_newton",
+                                    "newton",
+                                    "lm_schur",
+                                    "varpro",
+                                    "gi",
+                                    "ceres_lbfgs",
+                                    "ceres_lm",
+                                    "anderson/window=5:gi",
+                                    "anderson/window=5:tdm",
+                                    "anderson/window=5:sdm"};
 // Enough for a mean, and before any method is done.
 constexpr int kIterations = 30;
 
@@ -99,7 +113,7 @@ std::vector<PlotPanel> AgainstGrowth(const ExperimentTables& tables, const std::
   panel.y_label = "seconds per iteration";
   panel.log_x = panel.log_y = true;
   int color = 0;
-  for (const char* solver : kSolvers) {
+  for (const char* solver : kDrawnMethods) {
     const CsvTable rows = tables.at("").Where("solver", solver);
     panel.series.push_back({solver, rows.Numbers(size), rows.Numbers("seconds_per_iteration"),
                             PlotSeries::Style::kLinePoints, color++});

@@ -21,22 +21,29 @@ struct Pair {
   CsvTable anderson;
 };
 
-/// Of `table`, one per example; in the main table a method has one row, in traces many.
+/// Of `table`, one per example, the paper's before ours; in the main table a method has one row, in
+/// traces many.
 std::vector<Pair> Pairs(const ExperimentTables& tables, const char* table) {
   std::vector<Pair> pairs;
-  for (const std::string& example : PaperExampleNames()) {
+  for (const std::string& example : ShownExampleNames()) {
     const CsvTable on = tables.at(table).Where("example", example);
     pairs.push_back({example, on.Where("solver", kJointLbfgs), on.Where("solver", kAndersonPdm)});
   }
   return pairs;
 }
 
-/// False where a pair has no figure to be judged by.
+bool Has(const Pair& pair, const std::string& column) {
+  return !std::isnan(OnlyNumber(pair.lbfgs, column)) &&
+         !std::isnan(OnlyNumber(pair.anderson, column));
+}
+
+/// Whether the paper's claims are judged on it: ours is told beside them.
+bool IsCounted(const Pair& pair) { return IsPaperExample(pair.example); }
+
+/// False where a pair that counts has no figure to be judged by.
 bool AllHave(const std::vector<Pair>& pairs, const std::string& column) {
-  return std::all_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
-    return !std::isnan(OnlyNumber(pair.lbfgs, column)) &&
-           !std::isnan(OnlyNumber(pair.anderson, column));
-  });
+  return std::all_of(pairs.begin(), pairs.end(),
+                     [&](const Pair& pair) { return !IsCounted(pair) || Has(pair, column); });
 }
 
 bool EndInOneBasin(const Pair& pair) {
@@ -48,8 +55,13 @@ void Append(const std::string& text, std::string* because) {
   *because += (because->empty() ? "" : "; ") + text;
 }
 
+std::string Label(const std::string& example) {
+  return ExampleLabel(example) + (IsPaperExample(example) ? "" : ", not counted");
+}
+std::string Label(const Pair& pair) { return Label(pair.example); }
+
 std::string OtherBasin(const Pair& pair) {
-  return pair.example + ": other minima, E " +
+  return Label(pair) + ": other minima, E " +
          ShortNumber(OnlyNumber(pair.anderson, "polished_energy"), kDigits) + " against " +
          ShortNumber(OnlyNumber(pair.lbfgs, "polished_energy"), kDigits);
 }
@@ -96,6 +108,8 @@ double ShareOfTimes(const CsvTable& lbfgs, const CsvTable& anderson) {
   return static_cast<double>(smaller) / kTimes;
 }
 
+int NumPaperExamples() { return static_cast<int>(PaperExampleNames().size()); }
+
 /// Largest ratio of both errors, either way, over iterations 1 to 5; NaN without them.
 double LargestRatio(const Pair& traces) {
   constexpr int kFirst = 5;
@@ -124,6 +138,7 @@ Judgement JudgeFaster(const ExperimentTables& tables) {
   if (!AllHave(pairs, "polished_energy")) return judgement;
   int compared = 0, sooner = 0;
   for (const Pair& pair : pairs) {
+    if (!Has(pair, "polished_energy")) continue;
     if (!EndInOneBasin(pair)) {
       Append(OtherBasin(pair), &judgement.because);
       continue;
@@ -131,9 +146,10 @@ Judgement JudgeFaster(const ExperimentTables& tables) {
     const auto of = [&pair](const char* column) {
       return std::pair(OnlyNumber(pair.anderson, column), OnlyNumber(pair.lbfgs, column));
     };
-    Append(pair.example + ": " + Against(pair, "iterations_to_1e-6", 1.0, " iterations, ") +
+    Append(Label(pair) + ": " + Against(pair, "iterations_to_1e-6", 1.0, " iterations, ") +
                Against(pair, "seconds_to_1e-6", 1e3, " ms"),
            &judgement.because);
+    if (!IsCounted(pair)) continue;
     for (const char* column : {"iterations_to_1e-6", "seconds_to_1e-6"}) {
       const auto [anderson, lbfgs] = of(column);
       if (std::isnan(anderson) && std::isnan(lbfgs)) continue;
@@ -154,17 +170,20 @@ Judgement JudgeEqualTimes(const ExperimentTables& tables) {
   double least = 1.0, most = 0.0;
   int compared = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (!Has(pairs[k], "polished_energy")) continue;
     if (!EndInOneBasin(pairs[k])) {
       Append(OtherBasin(pairs[k]), &judgement.because);
       continue;
     }
     const double share = ShareOfTimes(traces[k].lbfgs, traces[k].anderson);
-    if (std::isnan(share)) return Judgement();
+    if (std::isnan(share) && IsCounted(pairs[k])) return Judgement();
+    if (std::isnan(share)) continue;
+    Append(Label(pairs[k]) + ": at " + Rounded(100.0 * share, 0) + " % of the times",
+           &judgement.because);
+    if (!IsCounted(pairs[k])) continue;
     ++compared;
     least = std::min(least, share);
     most = std::max(most, share);
-    Append(pairs[k].example + ": at " + Rounded(100.0 * share, 0) + " % of the times",
-           &judgement.because);
   }
   constexpr double kHalf = 0.5;
   if (compared == 0) return judgement;
@@ -178,15 +197,15 @@ Judgement JudgeAlike(const ExperimentTables& tables) {
   constexpr double kFactor = 2.0;
   Judgement judgement;
   int alike = 0;
-  const std::vector<Pair> traces = Pairs(tables, "traces");
-  for (const Pair& pair : traces) {
+  for (const Pair& pair : Pairs(tables, "traces")) {
     const double ratio = LargestRatio(pair);
-    if (std::isnan(ratio)) return Judgement();
-    alike += ratio <= kFactor ? 1 : 0;
-    Append(pair.example + ": by a factor of " + ShortNumber(ratio, 2), &judgement.because);
+    if (std::isnan(ratio) && IsCounted(pair)) return Judgement();
+    if (std::isnan(ratio)) continue;
+    alike += IsCounted(pair) && ratio <= kFactor ? 1 : 0;
+    Append(Label(pair) + ": by a factor of " + ShortNumber(ratio, 2), &judgement.because);
   }
   judgement.because = "largest difference of both in iterations 1 to 5, " + judgement.because;
-  judgement.verdict = VerdictOf(alike, static_cast<int>(traces.size()));
+  judgement.verdict = VerdictOf(alike, NumPaperExamples());
   return judgement;
 }
 
@@ -198,28 +217,49 @@ Judgement JudgeProjections(const ExperimentTables& tables) {
   for (const Pair& pair : pairs) {
     const double per_iteration =
         OnlyNumber(pair.anderson, "projections") / OnlyNumber(pair.anderson, "iterations");
-    if (std::isnan(per_iteration)) return Judgement();
-    fewer += per_iteration < 1.0 ? 1 : 0;
-    Append(pair.example + ": " + ShortNumber(per_iteration, kDigits) + " per iteration, L-BFGS " +
+    if (std::isnan(per_iteration) && IsCounted(pair)) return Judgement();
+    if (std::isnan(per_iteration)) continue;
+    fewer += IsCounted(pair) && per_iteration < 1.0 ? 1 : 0;
+    Append(Label(pair) + ": " + ShortNumber(per_iteration, kDigits) + " per iteration, L-BFGS " +
                ShortNumber(OnlyNumber(pair.lbfgs, "projections"), kDigits) + " in all",
            &judgement.because);
   }
-  judgement.verdict = VerdictOf(fewer, static_cast<int>(pairs.size()));
+  judgement.verdict = VerdictOf(fewer, NumPaperExamples());
   return judgement;
 }
 
 Judgement JudgeRejections(const ExperimentTables& tables) {
   constexpr double kHalf = 0.5;
   Judgement judgement;
-  const std::vector<Pair> pairs = Pairs(tables, "");
   int taken = 0;
-  for (const Pair& pair : pairs) {
+  for (const Pair& pair : Pairs(tables, "")) {
     const double share = OnlyNumber(pair.anderson, "rejected");
-    if (std::isnan(share)) return Judgement();
-    taken += share < kHalf ? 1 : 0;
-    Append(pair.example + ": " + Rounded(100.0 * share, 0) + " % rejected", &judgement.because);
+    if (std::isnan(share) && IsCounted(pair)) return Judgement();
+    if (std::isnan(share)) continue;
+    taken += IsCounted(pair) && share < kHalf ? 1 : 0;
+    Append(Label(pair) + ": " + Rounded(100.0 * share, 0) + " % rejected", &judgement.because);
   }
-  judgement.verdict = VerdictOf(taken, static_cast<int>(pairs.size()));
+  judgement.verdict = VerdictOf(taken, NumPaperExamples());
+  return judgement;
+}
+
+Judgement JudgeUndamped(const ExperimentTables& tables) {
+  Judgement judgement;
+  int diverged = 0;
+  for (const std::string& example : ShownExampleNames()) {
+    const bool counts = IsPaperExample(example);
+    const CsvTable row = tables.at("").Where("example", example).Where("solver", kUndampedTdm);
+    // The start's E, not the end's, says whether the row is there: E may end as no number.
+    const double start = OnlyNumber(row, "start_energy");
+    if (std::isnan(start) && counts) return Judgement();
+    if (std::isnan(start)) continue;
+    const double end = OnlyNumber(row, "foot_energy");
+    diverged += counts && !(end <= start) ? 1 : 0;
+    Append(Label(example) + ": " + ShortNumber(start, kDigits) + " to " + ShortNumber(end, kDigits),
+           &judgement.because);
+  }
+  judgement.because = "E at the feet from the start to the end, " + judgement.because;
+  judgement.verdict = VerdictOf(diverged, NumPaperExamples());
   return judgement;
 }
 

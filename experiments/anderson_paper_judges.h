@@ -5,13 +5,14 @@
 
 namespace batten {
 
-// The rules of the experiment `examples`, each in words where it is used. Undecided where a row of
-// an example is missing.
+// The rules of the experiment `examples`, each in words where it is used. Verdicts are of
+// the paper's examples alone, undecided where a row of one is missing; what ours gives is told.
 Judgement JudgeFaster(const ExperimentTables& tables);
 Judgement JudgeEqualTimes(const ExperimentTables& tables);
 Judgement JudgeAlike(const ExperimentTables& tables);
 Judgement JudgeProjections(const ExperimentTables& tables);
 Judgement JudgeRejections(const ExperimentTables& tables);
+Judgement JudgeUndamped(const ExperimentTables& tables);
 
 /// holds: all of `of`; in part: some; does not hold: none.
 ClaimVerdict VerdictOf(int count, int of);

@@ -28,7 +28,7 @@ Points WithExtraPoints(const Points& points, int extra) {
 bool RunPoints(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
   CsvTable& table = (*tables)[""] = CsvTable(GrowthColumns());
   std::vector<PaperExample> examples;
-  if (!PaperExamples(&examples, error)) return false;
+  if (!ShownExamples(&examples, error)) return false;
   const PaperExample& example = examples.front();
   const int extras[] = {0, 1, 3, 7, 15};
   double done = 0.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/curve_shape.h"
 #include "experiments/experiment_runs.h"
 #include "splines/closest_point.h"
 
@@ -66,6 +67,15 @@ Eigen::VectorXd Feet(const Problem& problem, const Eigen::VectorXd& x, double* e
   return feet;
 }
 
+/// Loops of the curve that no point is nearest to; NaN where there is no curve.
+double FreeLoops(const Problem& problem, const Eigen::VectorXd& x) {
+  if (!x.allFinite()) return kNaN;
+  double energy = kNaN;
+  const Eigen::VectorXd feet = Feet(problem, x, &energy);
+  const CurveFit& fit = *problem.curve_fit();
+  return MeasureShape(fit.Curve(x), fit.data().points, feet).num_free_loops;
+}
+
 /// E at the feet of the minimum that `x` belongs to: newton, from the feet.
 double Polished(const Problem& problem, const Eigen::VectorXd& x) {
   if (!x.allFinite()) return kNaN;
@@ -116,16 +126,27 @@ double RejectedShare(const RunResult& result) {
 }  // namespace
 
 std::vector<std::string> FreeRunColumns() {
-  return {"example",         "start",
-          "solver",          "points",
-          "control_points",  "status",
-          "iterations",      "projections",
-          "seconds",         "seconds_per_iteration",
-          "start_energy",    "energy",
-          "foot_energy",     "polished_energy",
-          "length",          "iterations_to_1e-3",
-          "seconds_to_1e-3", "iterations_to_1e-6",
-          "seconds_to_1e-6", "rejected"};
+  return {"example",
+          "start",
+          "solver",
+          "points",
+          "control_points",
+          "status",
+          "iterations",
+          "projections",
+          "seconds",
+          "seconds_per_iteration",
+          "start_energy",
+          "energy",
+          "foot_energy",
+          "polished_energy",
+          "length",
+          "free_loops",
+          "iterations_to_1e-3",
+          "seconds_to_1e-3",
+          "iterations_to_1e-6",
+          "seconds_to_1e-6",
+          "rejected"};
 }
 
 std::vector<std::string> FreeTraceColumns() {
@@ -181,10 +202,12 @@ RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& 
               NumberText((result.seconds - result.setup_seconds) / std::max(iterations, 1.0)),
               NumberText(kept.empty() ? kNaN : kept.front().energy), NumberText(result.energy),
               NumberText(FootEnergy(*on.problem, result.x)), NumberText(polished),
-              NumberText(PolygonLength(SampledCurve(*on.problem, result.x)))});
+              NumberText(PolygonLength(SampledCurve(*on.problem, result.x))),
+              NumberText(FreeLoops(*on.problem, result.x))});
   for (const double gap : kGaps) {
     const auto at = std::find_if(kept.begin(), kept.end(), [&](const KeptIterate& point) {
-      return point.energy <= (1.0 + gap) * polished;
+      // One that ends above its start comes to no minimum.
+      return polished < kept.front().energy && point.energy <= (1.0 + gap) * polished;
     });
     row.push_back(NumberText(at == kept.end() ? kNaN : at->iteration));
     row.push_back(NumberText(at == kept.end() ? kNaN : at->seconds));

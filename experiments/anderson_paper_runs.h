@@ -14,6 +14,11 @@ namespace batten {
 // The paper's two methods.
 inline constexpr const char* kAndersonPdm = "anderson/window=5:pdm";
 inline constexpr const char* kJointLbfgs = "lbfgs";
+// The undamped method of which they say that it diverges.
+inline constexpr const char* kUndampedTdm = "tdm/damping=0/search=none";
+// Of each kind one, as many as there are colours.
+inline constexpr const char* kDrawnMethods[] = {kJointLbfgs, kAndersonPdm,  "pdm",    "tdm",
+                                                "sdm",       "foot_newton", "newton", "lm_schur"};
 
 /// A point set that the paper's experiments are run on.
 struct PaperExample {
@@ -21,10 +26,15 @@ struct PaperExample {
   int control_points = 0;
   Points points;
 };
-/// The paper's three, smooth, sharp and noisy, and one of ours, crawling.
+/// The paper's three, on which alone its claims are judged: smooth, sharp and noisy.
 const std::vector<std::string>& PaperExampleNames();
-/// False with one sentence in `error` where data are missing.
-bool PaperExamples(std::vector<PaperExample>* examples, std::string* error);
+/// Those, then ours, which is shown beside them: crawling.
+const std::vector<std::string>& ShownExampleNames();
+bool IsPaperExample(const std::string& name);
+/// The name, and whether the example is ours.
+std::string ExampleLabel(const std::string& name);
+/// In the order of ShownExampleNames. False with one sentence in `error` where data are missing.
+bool ShownExamples(std::vector<PaperExample>* examples, std::string* error);
 
 /// Closed uniform cubic with free parameters. `start` is a word as in FitSpec.
 std::shared_ptr<const Problem> FreeFit(const Points& points, int control_points,

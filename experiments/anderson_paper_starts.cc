@@ -13,7 +13,6 @@ namespace batten {
 namespace {
 
 constexpr const char* kStarts[] = {"circle", "ellipse", "disturbed circle"};
-constexpr const char* kSolvers[] = {kJointLbfgs, kAndersonPdm, "foot_newton"};
 constexpr const char* kJudged[] = {kJointLbfgs, kAndersonPdm};
 constexpr double kNotReached = std::numeric_limits<double>::infinity();
 
@@ -33,16 +32,17 @@ bool RunStarts(const ExperimentRun& run, ExperimentTables* tables, std::string* 
   CsvTable& runs = (*tables)[""] = CsvTable(FreeRunColumns());
   CsvTable& traces = (*tables)["traces"] = CsvTable(FreeTraceColumns());
   std::vector<PaperExample> examples;
-  if (!PaperExamples(&examples, error)) return false;
+  if (!ShownExamples(&examples, error)) return false;
   double done = 0.0;
-  const auto all = static_cast<double>(examples.size() * std::size(kStarts) * std::size(kSolvers));
+  const auto all =
+      static_cast<double>(examples.size() * std::size(kStarts) * std::size(kDrawnMethods));
   for (const PaperExample& example : examples) {
     for (const std::string start : kStarts) {
       const FreeCase on = {example.name, start,
                            start == kStarts[2]
                                ? FromDisturbedCircle(example)
                                : FreeFit(example.points, example.control_points, start)};
-      for (const char* solver : kSolvers) {
+      for (const char* solver : kDrawnMethods) {
         if (InterruptRequested()) return true;
         if (run.progress) run.progress(done / all, example.name + " " + start + " " + solver);
         done += 1.0;
@@ -81,16 +81,19 @@ Judgement JudgeStarts(const ExperimentTables& tables) {
   constexpr double kFactor = 2.0;
   Judgement judgement;
   int judged = 0, alike = 0;
-  for (const std::string& example : PaperExampleNames()) {
+  for (const std::string& example : ShownExampleNames()) {
+    const bool counts = IsPaperExample(example);
     for (const char* solver : kJudged) {
       const OverStarts over =
           LookAt(tables.at("").Where("example", example).Where("solver", solver));
-      if (!over.complete) return Judgement();
-      ++judged;
+      if (!over.complete && counts) return Judgement();
+      if (!over.complete) continue;
+      judged += counts ? 1 : 0;
       const bool is_alike =
           over.one_basin && over.most <= kFactor * over.fewest && std::isfinite(over.most);
-      alike += is_alike ? 1 : 0;
-      judgement.because += (judgement.because.empty() ? "" : "; ") + example + " " + solver + ": " +
+      alike += counts && is_alike ? 1 : 0;
+      judgement.because += (judgement.because.empty() ? "" : "; ") + ExampleLabel(example) +
+                           (counts ? " " : ", not counted, ") + solver + ": " +
                            (over.one_basin ? "one minimum" : "different minima") + ", ";
       judgement.because += std::isfinite(over.most) ? NumberText(over.fewest) + " to " +
                                                           NumberText(over.most) + " iterations"
@@ -103,9 +106,9 @@ Judgement JudgeStarts(const ExperimentTables& tables) {
 
 std::vector<PlotPanel> ErrorsFromStarts(const ExperimentTables& tables) {
   std::vector<PlotPanel> panels;
-  for (const std::string& example : PaperExampleNames()) {
+  for (const std::string& example : ShownExampleNames()) {
     PlotPanel panel;
-    panel.title = example;
+    panel.title = ExampleLabel(example);
     panel.x_label = "iteration";
     panel.y_label = "E at the foot points";
     panel.log_x = panel.log_y = true;
@@ -133,7 +136,8 @@ Experiment AndersonPaperStarts() {
   experiment.title = "Three starting curves";
   experiment.text =
       "The examples from a circle, from an ellipse with the data's principal axes, and from "
-      "the circle with its control points moved at random (seeded) in a square of side 0.2.";
+      "the circle with its control points moved at random (seeded) in a square of side 0.2. "
+      "*crawling* is ours and not judged.";
   experiment.run = &RunStarts;
   experiment.shown = [](const ExperimentTables& tables) {
     return tables.at("").Select({"example", "start", "solver", "status", "iterations", "seconds",

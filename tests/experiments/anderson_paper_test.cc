@@ -169,12 +169,69 @@ TEST(AndersonPaper, JudgesProjectionsAndRejections) {
   const Method lbfgs;
   const Method often = {"1", "100", "0.1", "100", "0.5"};
   const Method seldom = {"1", "100", "0.1", "99", "0.49"};
-  for (const std::size_t claim : {3U, 4U}) {
+  for (const std::size_t claim : {3U, 5U}) {
     EXPECT_EQ(Verdict(experiment, Examples(lbfgs, seldom, seldom), claim), kHolds);
     EXPECT_EQ(Verdict(experiment, Examples(lbfgs, seldom, often), claim), kInPart);
     EXPECT_EQ(Verdict(experiment, Examples(lbfgs, often, often), claim), kDoesNotHold);
     EXPECT_EQ(Verdict(experiment, WithoutLastRow(Examples(lbfgs, often, often)), claim),
               kUndecided);
+  }
+}
+
+TEST(AndersonPaper, JudgesWhetherUndampedTdmDiverges) {
+  const Experiment experiment = AndersonPaperExamples();
+  const auto tables = [](const char* first, const char* last) {
+    ExperimentTables made;
+    CsvTable& table = made[""] = CsvTable(FreeRunColumns());
+    for (const std::string& example : PaperExampleNames()) {
+      Add({{"example", example},
+           {"solver", kUndampedTdm},
+           {"start_energy", "2"},
+           {"foot_energy", example == PaperExampleNames().back() ? last : first}},
+          &table);
+    }
+    return made;
+  };
+  EXPECT_EQ(Verdict(experiment, tables("3", "nan"), 4), kHolds);
+  EXPECT_EQ(Verdict(experiment, tables("3", "2"), 4), kInPart);
+  EXPECT_EQ(Verdict(experiment, tables("1", "2"), 4), kDoesNotHold);
+  EXPECT_EQ(Verdict(experiment, WithoutLastRow(tables("3", "3")), 4), kUndecided);
+}
+
+/// `tables` of the paper's examples with the rows that the last one has in `from` given to ours.
+ExperimentTables WithOurExample(ExperimentTables tables, const ExperimentTables& from) {
+  const std::string& ours = ShownExampleNames().back();
+  for (auto& [name, table] : tables) {
+    const CsvTable rows = from.at(name).Where("example", PaperExampleNames().back());
+    for (std::size_t row = 0; row < rows.num_rows(); ++row) {
+      Cells cells;
+      for (const std::string& column : rows.columns()) {
+        cells.emplace_back(column, column == "example" ? ours : rows.Text(row, column));
+      }
+      Add(cells, &table);
+    }
+  }
+  return tables;
+}
+
+TEST(AndersonPaper, TellsWhatOurExampleGivesAndJudgesByThePapersAlone) {
+  const Experiment experiment = AndersonPaperExamples();
+  const std::vector<double> middle = {9.0, 4.0, 2.0, 1.0, 1.0, 1.0};
+  const std::vector<double> above = {9.0, 40.0, 20.0, 10.0, 10.0, 10.0};
+  const Method slower = {"1.0005", "150", "0.15", "300", "0.9"};
+  const Method faster = {"1.0005", "50", "0.05", "90", "0.1"};
+  const ExperimentTables slow = Traces(middle, above, above, slower);
+  const ExperimentTables fast = Traces(middle, middle, middle, faster);
+  for (const std::size_t claim : {0U, 1U, 2U, 3U, 5U}) {
+    for (const auto& [paper, ours] : {std::pair(slow, fast), std::pair(fast, slow)}) {
+      const auto& judge = experiment.claims[claim].judge;
+      const Judgement alone = judge(paper);
+      const Judgement both = judge(WithOurExample(paper, ours));
+      EXPECT_EQ(both.verdict, alone.verdict) << claim;
+      EXPECT_NE(judge(ours).verdict, alone.verdict) << claim;
+      EXPECT_THAT(both.because, HasSubstr("crawling (ours), not counted")) << claim;
+      EXPECT_THAT(both.because, ::testing::StartsWith(alone.because)) << claim;
+    }
   }
 }
 
@@ -267,6 +324,20 @@ ExperimentTables Starts(const char* polished, const char* iterations, bool of_lb
   return tables;
 }
 
+TEST(AndersonPaper, TellsWindowsAndStartsOfOurExampleWithoutCountingThem) {
+  const std::tuple<Experiment, ExperimentTables, ExperimentTables> cases[] = {
+      {AndersonPaperWindow(), WindowTables({"100", "90"}, {"100", "90"}),
+       WindowTables({"100", "10"}, {"100", "10"})},
+      {AndersonPaperStarts(), Starts("1", "100", true), Starts("2", "100", true)}};
+  for (const auto& [experiment, paper, other] : cases) {
+    ASSERT_EQ(Verdict(experiment, paper), kHolds);
+    const ExperimentTables both = WithOurExample(paper, other);
+    EXPECT_EQ(Verdict(experiment, both), kHolds) << experiment.name;
+    EXPECT_THAT(experiment.claims[0].judge(both).because,
+                HasSubstr("crawling (ours), not counted"));
+  }
+}
+
 TEST(AndersonPaper, JudgesTheStarts) {
   const Experiment experiment = AndersonPaperStarts();
   EXPECT_EQ(Verdict(experiment, Starts("1.0009", "200", true)), kHolds);
@@ -298,8 +369,8 @@ TEST(AndersonPaper, ShowsWhatIsLeftOfTablesWithRowsTakenOut) {
 TEST(AndersonPaper, ScalesItsExamplesToTheUnitBox) {
   std::vector<PaperExample> examples;
   std::string error;
-  ASSERT_TRUE(PaperExamples(&examples, &error)) << error;
-  ASSERT_EQ(examples.size(), PaperExampleNames().size());
+  ASSERT_TRUE(ShownExamples(&examples, &error)) << error;
+  ASSERT_EQ(examples.size(), PaperExampleNames().size() + 1);
   for (const PaperExample& example : examples) {
     // Noise moves points by 0.03 at most.
     EXPECT_GE(example.points.minCoeff(), -0.03) << example.name;
@@ -314,7 +385,7 @@ TEST(AndersonPaper, ScalesItsExamplesToTheUnitBox) {
 TEST(AndersonPaper, CountsProjectionsAndReachesThePolishedMinimum) {
   std::vector<PaperExample> examples;
   std::string error;
-  ASSERT_TRUE(PaperExamples(&examples, &error)) << error;
+  ASSERT_TRUE(ShownExamples(&examples, &error)) << error;
   const PaperExample& smooth = examples.front();
   const FreeCase on = {smooth.name, "circle",
                        FreeFit(smooth.points, smooth.control_points, "circle")};
@@ -333,6 +404,7 @@ TEST(AndersonPaper, CountsProjectionsAndReachesThePolishedMinimum) {
     EXPECT_LE(polished, runs.Number(row, "foot_energy"));
     // A foot is never farther than the point at t.
     EXPECT_LE(runs.Number(row, "foot_energy"), (1.0 + kRounding) * runs.Number(row, "energy"));
+    EXPECT_GE(runs.Number(row, "free_loops"), 0.0);
     EXPECT_LE(runs.Number(row, "iterations_to_1e-6"), runs.Number(row, "iterations"));
     const double start = runs.Number(0, "start_energy");
     EXPECT_NEAR(runs.Number(row, "start_energy"), start, kRounding * start);
