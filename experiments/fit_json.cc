@@ -109,7 +109,8 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
   json["distance"] = {{"rms", report.rms},
                       {"max", report.max},
                       {"rms_orthogonal", report.rms_orthogonal},
-                      {"max_orthogonal", report.max_orthogonal}};
+                      {"max_orthogonal", report.max_orthogonal},
+                      {"num_ties", report.num_ties.has_value() ? Json(*report.num_ties) : Json()}};
   json["shape"] = ShapeJson(report);
   json["fairness"] = FairnessJson(report);
   json["solver"] = run.solver.ToString();

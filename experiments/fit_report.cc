@@ -98,11 +98,15 @@ void MeasureDistances(const CurveFit& fit, const BsplineCurve& curve, const Eige
 void MeasureFootPoints(const CurveFit& fit, const BsplineCurve& curve, double term_weight,
                        Eigen::VectorXd* feet, FitReport* report) {
   const Points& points = fit.data().points;
-  Eigen::VectorXd squared_distances;
-  ClosestPoint(curve).FindAll(points,
-                              static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
-                              feet, &squared_distances);
+  const std::vector<FootPoint> found = ClosestPoint(curve).FindAll(
+      points, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())), *feet, true);
+  Eigen::VectorXd squared_distances(points.rows());
+  report->num_ties = 0;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const FootPoint& foot = found[static_cast<std::size_t>(i)];
+    (*feet)[i] = foot.parameter;
+    squared_distances[i] = foot.squared_distance;
+    *report->num_ties += foot.tie ? 1 : 0;
     const double weight = fit.data().weights.has_value() ? (*fit.data().weights)[i] : 1.0;
     report->energy_at_foot_points += term_weight * weight * squared_distances[i];
   }
@@ -110,7 +114,8 @@ void MeasureFootPoints(const CurveFit& fit, const BsplineCurve& curve, double te
   report->max_orthogonal = std::sqrt(squared_distances.maxCoeff());
 }
 
-/// The curve's shape beside the data that count. A curve on the line has none: it lies on itself.
+}  // namespace
+
 std::optional<CurveShape> ShapeBesideData(const CurveFit& fit, const BsplineCurve& curve,
                                           const Eigen::VectorXd& feet) {
   if (fit.dimension() < 2) return std::nullopt;
@@ -121,8 +126,6 @@ std::optional<CurveShape> ShapeBesideData(const CurveFit& fit, const BsplineCurv
   }
   return MeasureShape(curve, fit.data().points(counted, Eigen::all), feet(counted));
 }
-
-}  // namespace
 
 FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec& spec) {
   FitReport report;

@@ -19,7 +19,10 @@ struct FitReport {
   double max = 0.0;
   double rms_orthogonal = 0.0;  // at plain closest points (splines/closest_point.h)
   double max_orthogonal = 0.0;
-  double energy_at_foot_points = 0.0;     // sum of w |C(foot) - Q|^2
+  double energy_at_foot_points = 0.0;  // sum of w |C(foot) - Q|^2
+  /// Data points that another point of the curve, farther along it, is as near to (FootPoint::tie);
+  /// none where it was not looked for: in rows that were read again.
+  std::optional<int> num_ties;
   std::optional<CurveShape> shape;        // none in dimension 1, or without a curve
   std::optional<CurveFairness> fairness;  // the same
   /// False where the audit does not apply: it knows distances from the data, end_point, end_tangent
@@ -29,6 +32,11 @@ struct FitReport {
   AuditReport audit;
   Verdict verdict;  // of the run's claim against the audit
 };
+/// The curve's shape beside the data that count, of which `feet` are the parameters. None in
+/// dimension 1: a curve on the line lies on itself.
+std::optional<CurveShape> ShapeBesideData(const CurveFit& fit, const BsplineCurve& curve,
+                                          const Eigen::VectorXd& feet);
+
 FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec& spec);
 
 /// The claim of a run, for Verify.

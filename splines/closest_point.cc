@@ -26,6 +26,22 @@ double SquaredDistanceToBox(const Box& box, const double* point, int dimension) 
   return sum;
 }
 
+/// Calls work(i) for i = 0..m-1, `threads` of them sharing the range.
+template <typename Work>
+void ForEachRow(Eigen::Index m, int threads, const Work& work) {
+  const auto work_on = [&work](Eigen::Index begin, Eigen::Index end) {
+    for (Eigen::Index i = begin; i < end; ++i) work(i);
+  };
+  const Eigen::Index num_threads = std::max(threads, 1);
+  const Eigen::Index share = (m + num_threads - 1) / num_threads;
+  std::vector<std::thread> others;
+  for (Eigen::Index begin = share; begin < m; begin += share) {
+    others.emplace_back(work_on, begin, std::min(begin + share, m));
+  }
+  work_on(0, std::min(share, m));
+  for (std::thread& other : others) other.join();
+}
+
 }  // namespace
 
 ClosestPoint::ClosestPoint(const BsplineCurve& curve) : curve_(curve) {
@@ -287,24 +303,24 @@ FootPoint ClosestPoint::Find(const double* point, double start, bool look_for_ti
   return search.Result();
 }
 
+std::vector<FootPoint> ClosestPoint::FindAll(const Points& points, int threads,
+                                             const Eigen::VectorXd& starts,
+                                             bool look_for_ties) const {
+  std::vector<FootPoint> feet(static_cast<std::size_t>(points.rows()));
+  ForEachRow(points.rows(), threads, [&](Eigen::Index i) {
+    feet[static_cast<std::size_t>(i)] = Find(&points(i, 0), starts[i], look_for_ties);
+  });
+  return feet;
+}
+
 void ClosestPoint::FindAll(const Points& points, int threads, Eigen::VectorXd* parameters,
                            Eigen::VectorXd* squared_distances) const {
-  const Eigen::Index m = points.rows();
-  if (squared_distances != nullptr) squared_distances->resize(m);
-  const auto find_range = [&](Eigen::Index begin, Eigen::Index end) {
-    for (Eigen::Index i = begin; i < end; ++i) {
-      const FootPoint foot = Find(&points(i, 0), (*parameters)[i]);
-      (*parameters)[i] = foot.parameter;
-      if (squared_distances != nullptr) (*squared_distances)[i] = foot.squared_distance;
-    }
-  };
-  const Eigen::Index share = (m + threads - 1) / std::max(threads, 1);
-  std::vector<std::thread> others;
-  for (Eigen::Index begin = share; begin < m; begin += share) {
-    others.emplace_back(find_range, begin, std::min(begin + share, m));
-  }
-  find_range(0, std::min(share, m));
-  for (std::thread& other : others) other.join();
+  if (squared_distances != nullptr) squared_distances->resize(points.rows());
+  ForEachRow(points.rows(), threads, [&](Eigen::Index i) {
+    const FootPoint foot = Find(&points(i, 0), (*parameters)[i]);
+    (*parameters)[i] = foot.parameter;
+    if (squared_distances != nullptr) (*squared_distances)[i] = foot.squared_distance;
+  });
 }
 
 }  // namespace batten

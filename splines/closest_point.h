@@ -41,9 +41,11 @@ class ClosestPoint {
   /// turns; the nearer it is, the less is searched. A point or curve that is not finite gives some
   /// parameter and a distance that is not finite.
   FootPoint Find(const double* point, double start, bool look_for_tie = false) const;
-  /// Feet of all rows of `points`, each started from its entry of `parameters`, which they replace.
-  /// `threads` >= 1 share the rows in ranges: the bits do not depend on their number.
-  /// `squared_distances` may be null.
+  /// What Find gives for all rows of `points`, each started from its entry of `starts`. `threads`
+  /// >= 1 share the rows in ranges: the bits do not depend on their number.
+  std::vector<FootPoint> FindAll(const Points& points, int threads, const Eigen::VectorXd& starts,
+                                 bool look_for_ties) const;
+  /// Of the same their parameters, which replace the starts, and distances, which may be null.
   void FindAll(const Points& points, int threads, Eigen::VectorXd* parameters,
                Eigen::VectorXd* squared_distances) const;
 

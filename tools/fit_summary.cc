@@ -117,6 +117,11 @@ std::string AuditText(const FitReport& report) {
          "; |g| is not audited";
 }
 
+std::string Ties(int count) {
+  return std::to_string(count) + (count == 1 ? " point is" : " points are") +
+         " as near to another point of the curve as to the foot";
+}
+
 }  // namespace
 
 std::string FitSummary(const std::string& label, const Problem& problem, const RunResult& run,
@@ -132,6 +137,7 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
   text +=
       Line("", "rms " + Short(report.rms_orthogonal) + ", largest " + Short(report.max_orthogonal) +
                    " (orthogonal), E there " + Short(report.energy_at_foot_points));
+  if (report.num_ties.value_or(0) > 0) text += Line("", Ties(*report.num_ties));
   if (report.shape.has_value()) text += Line("shape", ShapeText(*report.shape));
   if (report.fairness.has_value()) text += Line("fairness", FairnessText(*report.fairness));
   if (report.audited && report.audit.num_sharing > 0) {

@@ -215,6 +215,26 @@ TEST(MeasureFit, SeesTheShapeBesideTheDataThatCount) {
   EXPECT_EQ(json["shape"]["longest_free_arc"].get<double>(), report.shape->longest_free_arc);
 }
 
+TEST(MeasureFit, CountsThePointsWhoseFootIsATie) {
+  // Two legs of a right angle; of points without weight two are on the bisector, one beside it.
+  DataSet data;
+  data.points.resize(6, 2);
+  data.points << 1, -1, 0, 0, 1, 1, 1, 0, 0.5, 0, 1, 0.25;
+  data.weights = Eigen::VectorXd::Ones(6);
+  data.weights->tail(3).setZero();
+  data.parameters = Eigen::VectorXd(6);
+  *data.parameters << 0.0, 0.5, 1.0, 0.75, 0.75, 0.75;
+  FitSpec spec;
+  spec.degree = 1;
+  spec.control_points = 3;
+  spec.parameters.reset();
+  const auto problem = MakeProblem(std::move(data), std::move(spec));
+  const RunResult run = RunSolver(*problem, "banded_qr", {});
+  const FitReport report = MeasureFit(*problem, run, {});
+  EXPECT_EQ(report.num_ties, 2);
+  EXPECT_EQ(Json::parse(FitJson(*problem, run, {}, report))["distance"]["num_ties"], 2);
+}
+
 TEST(FitJson, HasNoShapeWhereThereIsNone) {
   DataSet line;
   line.points.resize(9, 1);

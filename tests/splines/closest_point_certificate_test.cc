@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -87,8 +88,10 @@ class ExtendedDistance {
   int p_;
 };
 
-/// A point of the kind `kind`: anywhere, far off, on the curve, or at a centre of curvature.
-void PlacePoint(const BsplineCurve& curve, int kind, std::mt19937* random, double* point) {
+/// A point of the kind `kind`: anywhere around `middle`, far off, on the curve, or at a centre of
+/// curvature.
+void PlacePoint(const BsplineCurve& curve, const Eigen::RowVectorXd& middle, int kind,
+                std::mt19937* random, double* point) {
   const int d = curve.dimension();
   std::normal_distribution<double> normal(0.0, 1.0);
   double values[3 * kMaxDimension];
@@ -103,11 +106,36 @@ void PlacePoint(const BsplineCurve& curve, int kind, std::mt19937* random, doubl
     squared_bend += bend[c] * bend[c];
   }
   for (int c = 0; c < d; ++c) {
-    if (kind == 0 || (kind == 3 && !(squared_bend > 1e-6))) point[c] = normal(*random);
-    if (kind == 1) point[c] = 1000.0 * normal(*random);
+    if (kind == 0 || (kind == 3 && !(squared_bend > 1e-6))) point[c] = middle[c] + normal(*random);
+    if (kind == 1) point[c] = middle[c] + 1000.0 * normal(*random);
     if (kind == 2) point[c] = values[c];
     if (kind == 3 && squared_bend > 1e-6) point[c] = values[c] + bend[c] / squared_bend;
   }
+}
+
+// Of squares, their sum and a root, here and in the test itself, in parts of the number.
+constexpr double kRoundings = 1e-15;
+
+/// Where the curve of a case lies: at the origin, or some sizes or many from it.
+Eigen::RowVectorXd RandomMiddle(int dimension, std::mt19937* random) {
+  const double distances[] = {0.0, 3.0, 1e3, 1e6};
+  const double distance = distances[(*random)() % 4];
+  Eigen::RowVectorXd middle(dimension);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (double& coordinate : middle) coordinate = distance * uniform(*random);
+  return middle;
+}
+
+/// What may be open: 1e-12 of the larger of size and distance; where a rounding of the coordinates
+/// is more, what the coordinates of the curve's points are off (order products and as many sums)
+/// does to a distance, on either side of the certificate and in either of its bounds.
+double AllowedGap(const BsplineBasis& basis, int dimension, double size,
+                  const Eigen::RowVectorXd& middle, double distance) {
+  const double epsilon = std::numeric_limits<double>::epsilon();
+  const double coordinate = middle.cwiseAbs().maxCoeff() + 1.0;
+  const double off = 2.0 * basis.order() * epsilon * coordinate;
+  return std::max(1e-12 * std::max(size, distance), 4.0 * std::sqrt(dimension) * off) +
+         kRoundings * distance;
 }
 
 TEST(ClosestPointCertificate, NoPointIsNearerThanTheBoundInAHundredThousandCases) {
@@ -120,22 +148,27 @@ TEST(ClosestPointCertificate, NoPointIsNearerThanTheBoundInAHundredThousandCases
     for (const SplineKind& kind : kinds) {
       for (const BsplineBasis& basis : MakeBases(kind, &random)) {
         const int d = 1 + round % kMaxDimension;
-        const BsplineCurve curve(basis, RandomPoints(basis.num_control_points(), d, &random));
+        const Eigen::RowVectorXd middle = RandomMiddle(d, &random);
+        Points control_points = RandomPoints(basis.num_control_points(), d, &random);
+        const double size =
+            (control_points.colwise().maxCoeff() - control_points.colwise().minCoeff()).maxCoeff();
+        control_points.rowwise() += middle;
+        const BsplineCurve curve(basis, control_points);
         const ClosestPoint closest(curve);
         for (int k = 0; k < kPointsPerCurve && cases < kCases; ++k, ++cases) {
           double point[kMaxDimension];
-          PlacePoint(curve, k % 4, &random, point);
+          PlacePoint(curve, middle, k % 4, &random, point);
           const FootPoint foot = closest.Find(point, RandomParameter(basis, &random));
           const double distance = std::sqrt(foot.squared_distance);
-          const double size = std::max(1.0, distance);  // control points fill a box of side 2
-          uncertified += distance - foot.lower_bound > 4.0 * ClosestPoint::kTolerance * size;
+          const double allowed = AllowedGap(basis, d, size, middle, distance);
+          uncertified += distance - foot.lower_bound > allowed;
           const ExtendedDistance extended(curve, point);
           const auto least = static_cast<double>(extended.Search());
-          ASSERT_GE(least, foot.lower_bound - 1e-15 * size) << "case " << cases;
-          ASSERT_LE(distance - least, ClosestPoint::kTolerance * size) << "case " << cases;
+          ASSERT_GE(least, foot.lower_bound - kRoundings * distance) << "case " << cases;
+          ASSERT_LE(distance - least, allowed) << "case " << cases;
           const auto there =
               static_cast<double>(extended.At(basis.FindSpan(foot.parameter), foot.parameter));
-          ASSERT_NEAR(std::sqrt(there), distance, ClosestPoint::kTolerance * size);
+          ASSERT_NEAR(std::sqrt(there), distance, allowed);
         }
       }
     }
@@ -163,6 +196,27 @@ TEST(ClosestPointCertificate, ReportsTies) {
   const double corner[] = {-1.0, 0.0};
   EXPECT_FALSE(closest.Find(corner, 0.9, true).tie);
   EXPECT_EQ(closest.Find(corner, 0.9).parameter, 0.0);
+}
+
+TEST(ClosestPointCertificate, ReportsTiesOfManyPointsEachIfAsked) {
+  // The same legs: on their bisector both are as near, off it one is nearer, at the corner one.
+  const BsplineCurve legs(BasisOf(1, false, {-1, -1, 0, 1, 1}),
+                          PointsOf({{1, -1}, {0, 0}, {1, 1}}));
+  const ClosestPoint closest(legs);
+  const Points points = PointsOf({{1, 0}, {1, 0.25}, {0.5, 0}, {-1, 0}});
+  const Eigen::VectorXd starts = Eigen::VectorXd::Constant(4, 0.9);
+  const bool ties[] = {true, false, true, false};
+  const double squared_distances[] = {0.5, 0.5 * 0.75 * 0.75, 0.125, 1.0};
+  for (const int threads : {1, 2}) {
+    const std::vector<FootPoint> feet = closest.FindAll(points, threads, starts, true);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(feet[i].tie, ties[i]) << i;
+      EXPECT_NEAR(feet[i].squared_distance, squared_distances[i], 1e-15);
+      EXPECT_NEAR(feet[i].lower_bound, std::sqrt(squared_distances[i]), 3e-12);
+      EXPECT_LE(feet[i].lower_bound, std::sqrt(squared_distances[i]));
+      EXPECT_FALSE(closest.FindAll(points, threads, starts, false)[i].tie);
+    }
+  }
 }
 
 TEST(ClosestPointCertificate, ReportsSelfCrossingsAsTies) {
@@ -232,6 +286,20 @@ TEST(ClosestPointCertificate, ThreadsDoNotChangeABit) {
     Eigen::VectorXd many = Eigen::VectorXd::Constant(1001, 0.25);
     closest.FindAll(points, threads, &many, nullptr);
     EXPECT_TRUE((one.array() == many.array()).all());
+  }
+  // With all that Find says of each.
+  for (const int threads : {1, 3}) {
+    const Eigen::VectorXd starts = Eigen::VectorXd::Constant(1001, 0.25);
+    const std::vector<FootPoint> feet = closest.FindAll(points, threads, starts, true);
+    ASSERT_EQ(feet.size(), 1001U);
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const FootPoint foot = closest.Find(&points(row, 0), 0.25, true);
+      EXPECT_EQ(feet[i].parameter, one[row]);
+      EXPECT_EQ(feet[i].squared_distance, distances[row]);
+      EXPECT_EQ(feet[i].lower_bound, foot.lower_bound);
+      EXPECT_EQ(feet[i].tie, foot.tie);
+    }
   }
   // Started from their feet, points find them again.
   Eigen::VectorXd again = one;
