@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "solvers/foot_model_kernel.h"
 #include "splines/basis_functions.h"
@@ -31,7 +30,7 @@ FootModel::FootModel(const FreeView& view, int threads)
     : view_(view),
       sites_(view.sites()),
       basis_(*view.sites().basis),
-      threads_(std::max(1, std::min(threads, view.num_points() / kPointsWorthAThread))),
+      workers_(std::max(1, std::min(threads, view.num_points() / kPointsWorthAThread))),
       order_(basis_.order()),
       dimension_(view.dimension()),
       local_(order_ * dimension_),
@@ -62,7 +61,7 @@ FootModel::FootModel(const FreeView& view, int threads)
   span_sums_.resize(spans * SpanStride());
   span_energies_.resize(spans);
   span_decreases_.resize(spans);
-  shares_.resize(static_cast<std::size_t>(threads_) + 1);
+  shares_.resize(static_cast<std::size_t>(workers_.num_threads()) + 1);
   PrepareSpans();
   for (Eigen::Index i = 0; i < sites_.weights.size(); ++i) {
     scale_ += sites_.weights[i] * sites_.points.row(i).squaredNorm();
@@ -133,24 +132,20 @@ void FootModel::SortBySpan(const double* parameters) {
 /// Whole spans to each thread, with about as many points.
 void FootModel::ShareSpans() {
   const int spans = basis_.num_domain_spans();
-  for (int k = 0; k <= threads_; ++k) {
-    const auto target = static_cast<int>(static_cast<double>(view_.num_points()) * k / threads_);
+  const int threads = workers_.num_threads();
+  for (int k = 0; k <= threads; ++k) {
+    const auto target = static_cast<int>(static_cast<double>(view_.num_points()) * k / threads);
     const auto found = std::lower_bound(span_begins_.begin(), span_begins_.end() - 1, target);
-    shares_[k] = k == threads_ ? spans : static_cast<int>(found - span_begins_.begin());
+    shares_[k] = k == threads ? spans : static_cast<int>(found - span_begins_.begin());
   }
   shares_[0] = 0;
 }
 
 template <typename Body>
 void FootModel::ForEachShare(Body body) {
-  std::vector<std::thread> others;
-  for (int k = 1; k < threads_; ++k) {
-    others.emplace_back([&body, this, k] {
-      for (int s = shares_[k]; s < shares_[k + 1]; ++s) body(s);
-    });
-  }
-  for (int s = shares_[0]; s < shares_[1]; ++s) body(s);
-  for (std::thread& other : others) other.join();
+  workers_.Run([&body, this](int k) {
+    for (int s = shares_[k]; s < shares_[k + 1]; ++s) body(s);
+  });
 }
 
 template <typename Body>
@@ -174,7 +169,8 @@ bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping
   for (const double part : span_energies_) energy_ += part;
   if (const NormalBand* other = view_.other_terms()) {
     const int n = basis_.num_control_points(), d = dimension_;
-    Points residual(n, d);
+    Points& residual = other_residual_;
+    residual.resize(n, d);
     other->NormalResidual(control_points, residual.data());
     const Eigen::Map<const Points> at(control_points, n, d);
     // |A P - B|^2 = |B|^2 - P'(A'B) - P'(A'B - A'A P)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "problems/free_view.h"
+#include "solvers/worker_pool.h"
 #include "splines/banded_cholesky.h"
 #include "splines/normal_band.h"
 #include "splines/substituted_band.h"
@@ -24,8 +25,9 @@ enum class FootModelKind {
 /// The reduced model of a free problem in its band (blocks of d x d, bandwidth (p + 1) d), the
 /// border of closed curves included: one pass over the points, sums of each span in their own
 /// place, so that the bits do not depend on the number of threads. Where constraints bind control
-/// points, P = offset + Z y, steps are those of y, from the band of Z'(half Hessian) Z. Nothing is
-/// allocated once sizes are known.
+/// points, P = offset + Z y, steps are those of y, from the band of Z'(half Hessian) Z.
+/// Sum, Factor, Solve, Move and ImproveFeet allocate nothing after their first call, but for what
+/// BandedCholesky says; the threads wait for the next pass.
 class FootModel {
  public:
   FootModel(const FreeView& view, int threads);
@@ -91,7 +93,7 @@ class FootModel {
   const FreeView& view_;
   const FreeSites& sites_;
   const BsplineBasis& basis_;
-  int threads_;
+  WorkerPool workers_;
   int order_;
   int dimension_;
   int local_;  // (p + 1) d
@@ -120,6 +122,7 @@ class FootModel {
   std::vector<double> diagonal_;  // n: of the half Hessian for a = 0
   std::vector<double> added_;     // n: to the half Hessian by Factor
   Eigen::VectorXd half_gradient_;
+  Points other_residual_;      // of the other terms
   const SparseRows* map_;      // Z; null: the identity
   SubstitutedBand free_band_;  // of the half Hessian in y
   Eigen::VectorXd free_half_gradient_;

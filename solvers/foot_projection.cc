@@ -13,6 +13,19 @@ Eigen::VectorXd FreeVariablesOf(const Objective& objective, const Eigen::VectorX
       objective.free_view()->WithoutParameters(all));
 }
 
+void FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all,
+                     Eigen::VectorXd* free) {
+  const FreeView& view = *objective.free_view();
+  const LinearElimination& elimination = objective.problem().elimination();
+  if (elimination.trivial()) {
+    *free = all.head(view.projected() ? view.sites().parameter_offset : all.size());
+    return;
+  }
+  free->resize(static_cast<Eigen::Index>(elimination.free().size()));
+  Eigen::Index k = 0;
+  for (const int variable : elimination.free()) (*free)[k++] = all[variable];
+}
+
 Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorXd& free,
                          Eigen::VectorXd* all) {
   if (!objective->Allow(Evaluation::kProjection, &free)) return Status::kStop;

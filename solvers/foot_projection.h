@@ -9,6 +9,8 @@ namespace batten {
 /// they stand behind the problem's variables, and are to be searched.
 Eigen::VectorXd AllWithParameters(const Objective& objective, const Eigen::VectorXd& x);
 Eigen::VectorXd FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all);
+/// The same into *free, which is allocated only if it has another size.
+void FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all, Eigen::VectorXd* free);
 
 /// Sets the parameters in `all` to the foot points on the curve of its control points, held ones
 /// excepted; counted as one projection at the free variables `free`. kNonFinite: `all` is no curve.

@@ -61,8 +61,8 @@ double JointDescent::Noise(double energy) const {
 }
 
 Status JointDescent::SumHere(FootModelKind kind) {
-  const Eigen::VectorXd free = FreeVariablesOf(*objective(), all_);
-  if (!objective()->Allow(Evaluation::kJacobian, &free)) return Status::kStop;
+  FreeVariablesOf(*objective(), all_, &free_);
+  if (!objective()->Allow(Evaluation::kJacobian, &free_)) return Status::kStop;
   return here_->Sum(all_, kind, damping_) ? Status::kOk : Status::kNonFinite;
 }
 
@@ -88,7 +88,7 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
 Status JointDescent::GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x) {
   all_ = all;
   const Status status = SumHere(kind_);
-  if (status == Status::kOk) *x = FreeVariablesOf(*objective(), all_);
+  if (status == Status::kOk) *x = free_;  // as SumHere has left them
   return status;
 }
 
@@ -127,8 +127,8 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
       if (status != Status::kOk) return Ended(status);
       continue;
     }
-    const Eigen::VectorXd free = FreeVariablesOf(*objective(), next_);
-    if (!objective()->Allow(Evaluation::kJacobian, &free)) return Ended(Status::kStop);
+    FreeVariablesOf(*objective(), next_, &free_);
+    if (!objective()->Allow(Evaluation::kJacobian, &free_)) return Ended(Status::kStop);
     const double before = here_->energy();
     const bool finite = there_->Sum(next_, kind_, ParameterDamping());
     const double fall = before - there_->energy();
@@ -146,7 +146,7 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
       growth_ = 2.0;
       all_.swap(next_);
       here_.swap(there_);
-      *x = free;
+      *x = free_;
       return std::nullopt;
     }
     damping_ = std::max(damping_ * growth_, kLeastDamping);

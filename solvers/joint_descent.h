@@ -51,6 +51,7 @@ class JointDescent : public Stepper {
   Eigen::VectorXd all_;    // control points and parameters at x
   Eigen::VectorXd given_;  // those that the start was given, before it moved them
   Eigen::VectorXd next_;
+  Eigen::VectorXd free_;  // variables at all_ or next_
   Eigen::VectorXd step_;
   std::unique_ptr<FootModel> here_;
   std::unique_ptr<FootModel> there_;

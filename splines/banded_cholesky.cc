@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "splines/band_sums.h"
 #include "splines/row_pack.h"
 
 namespace batten {
@@ -63,13 +64,35 @@ bool FlushDecayed(double limit, std::vector<double>* entries) {
   return all_zero;
 }
 
+/// `size` zeros, on the stack unless they are many.
+class Zeros {
+ public:
+  explicit Zeros(int size) {
+    if (size <= kOnStack) {
+      std::fill_n(stack_, size, 0.0);
+    } else {
+      heap_.resize(size);
+      entries_ = heap_.data();
+    }
+  }
+  Zeros(const Zeros&) = delete;
+  Zeros& operator=(const Zeros&) = delete;
+  double& operator[](int k) { return entries_[k]; }
+
+ private:
+  static constexpr int kOnStack = 2048;
+  double stack_[kOnStack];
+  std::vector<double> heap_;
+  double* entries_ = stack_;
+};
+
 /// Zeros whose number is known to the compiler, so that they can be registers, or (kSize < 0) not.
 template <int kSize>
 auto ZeroScratch([[maybe_unused]] int size) {
   if constexpr (kSize >= 0) {
     return std::array<double, kSize>{};
   } else {
-    return std::vector<double>(size);
+    return Zeros(size);
   }
 }
 
@@ -80,13 +103,6 @@ double OneNorm(const std::vector<double>& x) {
 }
 
 }  // namespace
-
-/// What is left of the rows after the eliminated ones.
-struct BandedCholesky::Pending {
-  std::vector<double> band;    // width x width: rows j.., row i from its diagonal to j + width - 2
-  std::vector<double> border;  // (width - 1) x (width - 1): rows j.., border columns
-  std::vector<double> corner;  // border x border
-};
 
 bool BandedCholesky::Factor(const NormalBand& matrix) {
   n_ = matrix.size();
@@ -99,26 +115,36 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
   num_border_ = matrix.cyclic() && !overlaps ? width_ - 1 : 0;
   const int dense_size = overlaps ? n_ : std::min(n_, width_ - 1 + num_border_);
   num_swept_ = n_ - dense_size;
-  const std::vector<double> diagonal = matrix.Diagonal();
-  largest_diagonal_ = 0.0;
-  for (const double entry : diagonal) largest_diagonal_ = std::max(largest_diagonal_, entry);
-  for (const double sum : matrix.AbsoluteRowSums()) norm_ = std::max(norm_, sum);
-
-  Pending pending = FirstPending(matrix.band());
+  MeasureMatrix(matrix, dense_size);
+  FirstPending(matrix.band(), &pending_);
   factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
   border_.resize(static_cast<std::size_t>(num_swept_) * num_border_);
   const bool swept = WithFixedShape(
-      width_, 1, [&](auto width, auto) { return Sweep<width>(matrix.band(), &pending); });
+      width_, 1, [&](auto width, auto) { return Sweep<width>(matrix.band(), &pending_); });
   if (!swept) return false;
-  FillDense(matrix, pending);
-  std::vector<double> limits(diagonal.end() - dense_size, diagonal.end());
-  for (double& limit : limits) limit *= n_ * kEpsilon;
-  return FactorDense(dense_size, limits.data(), dense_.data());
+  FillDense(matrix, pending_);
+  return FactorDense(dense_size, limits_.data(), dense_.data());
 }
 
-BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& band) const {
+void BandedCholesky::MeasureMatrix(const NormalBand& matrix, int dense_size) {
+  if (matrix.cyclic() && num_border_ == 0) {
+    sums_ = matrix.AbsoluteRowSums();
+    limits_ = matrix.Diagonal();
+  } else {
+    AbsoluteRowSums(matrix, &sums_);
+    limits_.resize(static_cast<std::size_t>(n_));
+    for (int j = 0; j < n_; ++j) limits_[j] = matrix.band()[static_cast<std::size_t>(j) * width_];
+  }
+  for (const double sum : sums_) norm_ = std::max(norm_, sum);
+  largest_diagonal_ = 0.0;
+  for (const double entry : limits_) largest_diagonal_ = std::max(largest_diagonal_, entry);
+  limits_.erase(limits_.begin(), limits_.end() - dense_size);
+  for (double& limit : limits_) limit *= n_ * kEpsilon;
+}
+
+void BandedCholesky::FirstPending(const std::vector<double>& band, Pending* first) const {
   const int border = width_ - 1;
-  Pending pending;
+  Pending& pending = *first;
   pending.band.assign(width_ * width_, 0.0);
   pending.border.assign(num_border_ * num_border_, 0.0);
   pending.corner.assign(num_border_ * num_border_, 0.0);
@@ -133,7 +159,6 @@ BandedCholesky::Pending BandedCholesky::FirstPending(const std::vector<double>& 
       pending.border[(b + k - border) * num_border_ + b] = row[k];
     }
   }
-  return pending;
 }
 
 template <int kWidth>

@@ -9,7 +9,9 @@ namespace batten {
 
 /// N = U' D U in the band, U with unit diagonal. Cyclic matrices carry their last width - 1 columns
 /// along as a border, but only as far as the fill in it has not decayed; what is left at the end,
-/// and small overlapping matrices (n < 2 width - 1), are dense.
+/// and small overlapping matrices (n < 2 width - 1), are dense. Matrices of one shape after the
+/// first one are factored without an allocation, overlapping ones excepted, and solved with none
+/// where width * d is at most 2048.
 class BandedCholesky {
  public:
   /// False if a pivot is not above n * eps * (its diagonal entry) or not finite: N is singular to
@@ -22,8 +24,15 @@ class BandedCholesky {
   int size() const { return n_; }
 
  private:
-  struct Pending;
-  Pending FirstPending(const std::vector<double>& band) const;
+  /// What is left of the rows after the eliminated ones.
+  struct Pending {
+    std::vector<double> band;  // width x width: rows j.., row i from its diagonal to j + width - 2
+    std::vector<double> border;  // (width - 1) x (width - 1): rows j.., border columns
+    std::vector<double> corner;  // border x border
+  };
+  void FirstPending(const std::vector<double>& band, Pending* pending) const;
+  /// Of the matrix: what pivots are held against, and the norm.
+  void MeasureMatrix(const NormalBand& matrix, int dense_size);
   /// Eliminates columns 0..num_swept_ - 1. kWidth < 0: any width. False as Factor().
   template <int kWidth>
   bool Sweep(const std::vector<double>& band, Pending* pending);
@@ -49,6 +58,10 @@ class BandedCholesky {
   std::vector<double> factor_;  // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
   std::vector<double> border_;  // as many rows x num_border_: U(j, n - num_border_ + b)
   std::vector<double> dense_;   // upper triangle, row-major, 1 / D on its diagonal
+  // Of Factor alone, kept for the next one.
+  Pending pending_;
+  std::vector<double> sums_;
+  std::vector<double> limits_;
 };
 
 }  // namespace batten

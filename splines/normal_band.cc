@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "splines/band_sums.h"
 #include "splines/block_gram.h"
 #include "splines/row_pack.h"
 
@@ -214,25 +215,31 @@ std::vector<double> NormalBand::Diagonal() const {
   return diagonal;
 }
 
+void AbsoluteRowSums(const NormalBand& matrix, std::vector<double>* sums) {
+  const int n = matrix.size();
+  const int width = matrix.width();
+  sums->assign(static_cast<std::size_t>(n), 0.0);
+  const int inside_end = std::max(n - width + 1, 0);
+  for (int j = 0; j < n; ++j) {
+    const double* entry = matrix.band().data() + static_cast<std::size_t>(j) * width;
+    if (width > 0) (*sums)[j] += std::abs(entry[0]);
+    for (int k = 1; k < width; ++k) {
+      if (j >= inside_end && j + k >= n && !matrix.cyclic()) break;
+      const double size = std::abs(entry[k]);
+      (*sums)[j] += size;
+      (*sums)[j + k < n ? j + k : j + k - n] += size;
+    }
+  }
+}
+
 std::vector<double> NormalBand::AbsoluteRowSums() const {
   std::vector<double> sums(shape_.num_columns, 0.0);
   if (Overlaps()) {
     // Entries on one place add before their absolute value is taken.
     const Eigen::VectorXd dense = ToDense().cwiseAbs().rowwise().sum();
     std::copy_n(dense.data(), sums.size(), sums.begin());
-    return sums;
-  }
-  const int width = shape_.width;
-  const int inside_end = std::max(shape_.num_columns - width + 1, 0);
-  for (int j = 0; j < shape_.num_columns; ++j) {
-    const double* entry = band_.data() + static_cast<std::size_t>(j) * width;
-    if (width > 0) sums[j] += std::abs(entry[0]);
-    for (int k = 1; k < width; ++k) {
-      if (j >= inside_end && j + k >= shape_.num_columns && !shape_.cyclic) break;
-      const double size = std::abs(entry[k]);
-      sums[j] += size;
-      sums[j < inside_end ? j + k : WrappedColumn(j + k)] += size;
-    }
+  } else {
+    batten::AbsoluteRowSums(*this, &sums);
   }
   return sums;
 }
