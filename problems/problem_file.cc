@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -168,6 +169,26 @@ bool ReadGuard(const StrictObject& file, FitSpec* spec) {
   return true;
 }
 
+/// After the terms and the guard. How many spans there are is known once the knots are.
+bool ReadSpanWeights(const StrictObject& file, FitSpec* spec) {
+  if (!file.Has("span_weights")) return true;
+  const bool has_fairing = std::any_of(
+      spec->terms.begin(), spec->terms.end(),
+      [](const NameSpec& term) { return term.name == "fairing" || term.name == "curve_fairing"; });
+  if (!has_fairing && !spec->guard.has_value()) {
+    return file.Refuse("span_weights",
+                       "nothing, where there is neither a fairing term nor a guard");
+  }
+  if (!file.Numbers("span_weights", kRequired, &spec->span_weights)) return false;
+  for (std::size_t k = 0; k < spec->span_weights.size(); ++k) {
+    const double weight = spec->span_weights[k];
+    if (weight >= 0.0 && std::isfinite(weight)) continue;
+    return file.Complain("span_weights/" + std::to_string(k),
+                         "found " + NumberText(weight) + "; allowed: a number >= 0");
+  }
+  return true;
+}
+
 bool ReadKind(const StrictObject& file, FitSpec* spec) {
   std::string kind = ToString(spec->parameter_kind);
   return file.Word("parameter_kind", kOptional, {"fixed", "free", "projected"}, &kind) &&
@@ -192,14 +213,14 @@ bool ReadProblemFile(const std::string& path, CatalogueEntry* entry, std::string
   read.path = path;
   FitSpec* spec = &read.spec;
   if (!file.HasOnly({"name", "summary", "data", "spline", "parameters", "terms", "start",
-                     "parameter_kind", "hold_ends", "keep_order", "guard", "constraints",
-                     "reference", "citation"}) ||
+                     "parameter_kind", "hold_ends", "keep_order", "guard", "span_weights",
+                     "constraints", "reference", "citation"}) ||
       !ReadName(file, &read.name) || !file.Text("summary", kOptional, &read.summary) ||
       !ReadData(file, &read) || !ReadParameters(file, spec) || !ReadSpline(file, spec) ||
       !ReadTerms(file, spec) || !ReadConstraints(file, spec) ||
       !file.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) ||
-      !ReadKind(file, spec) || !ReadGuard(file, spec) || !ReadReference(file, &read) ||
-      !file.Text("citation", kOptional, &read.citation)) {
+      !ReadKind(file, spec) || !ReadGuard(file, spec) || !ReadSpanWeights(file, spec) ||
+      !ReadReference(file, &read) || !file.Text("citation", kOptional, &read.citation)) {
     return false;
   }
   spec->name = read.name;

@@ -123,6 +123,57 @@ TEST_F(ProblemFile, RefusesNumbersOutOfRange) {
   EXPECT_THAT(with_reference("fixed", "best_known"), HasSubstr("energy"));
 }
 
+TEST_F(ProblemFile, TakesWeightsOfSpansForFairingAndGuards) {
+  // Three spans of an open curve of degree 2.
+  const std::string spline = R"("degree": 2, "control_points": 5)";
+  const char* const faired[] = {
+      R"(, "terms": ["interpolation", "fairing/weight=1e-3"])",
+      R"(, "parameter_kind": "free", "start": "circle", "guard": "bending")"};
+  for (const char* more : faired) {
+    const auto energy_of_fairing = [&](const std::string& weights) {
+      const CatalogueEntry entry =
+          Read(WithSpline(spline, more + (R"(, "span_weights": )" + weights)));
+      std::string error;
+      const auto problem = LoadProblem(entry, &error);
+      EXPECT_NE(problem, nullptr) << error;
+      if (problem == nullptr) return 0.0;
+      const auto& term = problem->terms().back();
+      EXPECT_THAT(term.name, HasSubstr("fairing"));
+      double energy = 0.0;
+      term.family->Evaluate(problem->start(), 0, term.family->size(), &energy, nullptr);
+      return energy;
+    };
+    // E is a sum over spans.
+    const double all = energy_of_fairing("[1, 1, 1]");
+    const double first = energy_of_fairing("[1, 0, 0]");
+    const double others = energy_of_fairing("[0, 1, 1]");
+    EXPECT_GT(first, 1e-3 * all);
+    EXPECT_GT(others, 1e-3 * all);
+    EXPECT_NEAR(first + others, all, 1e-12 * all);
+    EXPECT_NEAR(energy_of_fairing("[2.5, 1, 1]"), all + 1.5 * first, 1e-12 * all);
+    EXPECT_EQ(energy_of_fairing("[0, 0, 0]"), 0.0);
+  }
+}
+
+TEST_F(ProblemFile, RefusesWeightsOfSpansThatAreNone) {
+  const std::string spline = R"("degree": 2, "control_points": 5)";
+  const std::string faired = R"(, "terms": ["interpolation", "fairing"], "span_weights": )";
+  EXPECT_EQ(Refusal(WithSpline(spline, faired + "[1, -1, 1]")),
+            "/span_weights/1: found -1; allowed: a number >= 0");
+  EXPECT_EQ(Refusal(WithSpline(spline, faired + "[1, \"1\", 1]")),
+            "/span_weights/1: found \"1\"; allowed: a number");
+  EXPECT_EQ(Refusal(WithSpline(spline, faired + "[]")),
+            "/span_weights: found an empty list; allowed: a list of numbers");
+  EXPECT_THAT(Refusal(WithSpline(spline, faired + "3")), HasSubstr("/span_weights: found 3"));
+  EXPECT_THAT(Refusal(WithSpline(spline, R"(, "span_weights": [1, 1, 1])")),
+              HasSubstr("nothing, where there is neither a fairing term nor a guard"));
+  // How many there are is seen when the problem is made.
+  std::string error;
+  EXPECT_EQ(LoadProblem(Read(WithSpline(spline, faired + "[1, 1]")), &error), nullptr);
+  EXPECT_THAT(error, EndsWith("problem.json: found 2 weights of spans; the curve has 3 spans that "
+                              "are not empty"));
+}
+
 TEST_F(ProblemFile, RefusesWrongTypes) {
   EXPECT_EQ(Refusal(WithSpline(R"("degree": 3.5, "control_points": 4)")),
             "/spline/degree: found 3.5; allowed: 1 to 9, whole numbers");
