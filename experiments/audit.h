@@ -89,7 +89,7 @@ struct AuditedFit {
   std::vector<double> points;          // m x d
   std::vector<double> parameters;      // m
   std::vector<double> weights;         // m, or empty: all 1
-  std::vector<AuditedDistance> distances = {AuditedDistance()};
+  std::vector<AuditedDistance> distances = std::vector<AuditedDistance>(1);
   std::vector<AuditedIntegral> integrals;
   std::vector<AuditedEnd> ends;
   /// Of free parameters, m; empty: they are fixed. Those past an end are given as that end.

@@ -116,17 +116,6 @@ void MeasureFootPoints(const CurveFit& fit, const BsplineCurve& curve, double te
 
 }  // namespace
 
-std::optional<CurveShape> ShapeBesideData(const CurveFit& fit, const BsplineCurve& curve,
-                                          const Eigen::VectorXd& feet) {
-  if (fit.dimension() < 2) return std::nullopt;
-  if (!fit.data().weights.has_value()) return MeasureShape(curve, fit.data().points, feet);
-  std::vector<Eigen::Index> counted;
-  for (Eigen::Index i = 0; i < feet.size(); ++i) {
-    if ((*fit.data().weights)[i] > 0.0) counted.push_back(i);
-  }
-  return MeasureShape(curve, fit.data().points(counted, Eigen::all), feet(counted));
-}
-
 FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec& spec) {
   FitReport report;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -152,6 +141,17 @@ FitReport MeasureFit(const Problem& problem, const RunResult& run, const RunSpec
     report.verdict = Verify(claim, report.audit);
   }
   return report;
+}
+
+std::optional<CurveShape> ShapeBesideData(const CurveFit& fit, const BsplineCurve& curve,
+                                          const Eigen::VectorXd& feet) {
+  if (fit.dimension() < 2) return std::nullopt;
+  if (!fit.data().weights.has_value()) return MeasureShape(curve, fit.data().points, feet);
+  std::vector<Eigen::Index> counted;
+  for (Eigen::Index i = 0; i < feet.size(); ++i) {
+    if ((*fit.data().weights)[i] > 0.0) counted.push_back(i);
+  }
+  return MeasureShape(curve, fit.data().points(counted, Eigen::all), feet(counted));
 }
 
 Claim ClaimOf(const RunResult& run, const RunSpec& spec) {

@@ -6,7 +6,9 @@
 #include <random>
 
 #include "experiments/comparison.h"
+#include "experiments/fit_report.h"
 #include "problems/fit_problem.h"
+#include "splines/closest_point.h"
 
 namespace batten {
 namespace {
@@ -54,10 +56,24 @@ CsvTable SolverTable(const std::string& problem, const StartComparisonSpec& spec
   return table;
 }
 
-CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
+/// What a basin's curve is like, as cells.
+std::vector<std::string> ShapeCells(const CurveFit& fit, const BasinEnd& end) {
+  const BsplineCurve curve(fit.basis(), end.control_points);
+  Eigen::VectorXd feet =
+      Eigen::VectorXd::Constant(fit.data().points.rows(), curve.basis().domain_begin());
+  ClosestPoint(curve).FindAll(fit.data().points, 1, &feet, nullptr);
+  const std::optional<CurveShape> shape = ShapeBesideData(fit, curve, feet);
+  if (!shape.has_value()) return {"-", "-", "-", "-"};
+  return {NumberText(shape->length), NumberText(shape->turning),
+          std::to_string(shape->num_free_loops), NumberText(shape->max_distance_to_data)};
+}
+
+CsvTable BasinTable(const Problem& problem, const StartComparisonSpec& spec,
                     const std::vector<OneRun>& runs, const std::vector<BasinEnd>& ends,
                     const std::vector<int>& basins) {
-  std::vector<std::string> columns = {"problem", "basin", "energy", "energy_at_foot_points"};
+  std::vector<std::string> columns = {
+      "problem", "basin",   "energy",         "energy_at_foot_points",
+      "length",  "turning", "num_free_loops", "max_distance_to_data"};
   for (const NameSpec& solver : spec.solvers) {
     columns.push_back(solver.ToString());
     columns.push_back(solver.ToString() + " seconds");
@@ -67,9 +83,12 @@ CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
   for (int basin = 0; basin < count; ++basin) {
     const auto first =
         static_cast<std::size_t>(std::find(basins.begin(), basins.end(), basin) - basins.begin());
-    std::vector<std::string> row = {problem, std::to_string(basin + 1),
+    std::vector<std::string> row = {problem.name(), std::to_string(basin + 1),
                                     NumberText(ends[first].energy),
                                     NumberText(ends[first].energy_at_foot_points)};
+    for (std::string& cell : ShapeCells(*problem.curve_fit(), ends[first])) {
+      row.push_back(std::move(cell));
+    }
     for (std::size_t s = 0; s < spec.solvers.size(); ++s) {
       std::vector<double> seconds;
       for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -134,7 +153,7 @@ bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
   comparison->interrupted = InterruptRequested();
   const std::vector<int> basins = FindBasins(problem, ends);
   comparison->solvers = SolverTable(problem.name(), spec, runs, ends, basins);
-  comparison->basins = BasinTable(problem.name(), spec, runs, ends, basins);
+  comparison->basins = BasinTable(problem, spec, runs, ends, basins);
   comparison->runs = CsvTable({"problem", "solver", "start", "status", "iterations", "seconds",
                                "energy", "energy_at_foot_points", "basin", "polished"});
   for (std::size_t k = 0; k < runs.size(); ++k) {

@@ -28,8 +28,9 @@ struct StartComparison {
   /// best basin of all), basins (different ones), median_energy and best_energy (at foot points),
   /// median_iterations, median_seconds.
   CsvTable solvers;
-  /// A row per basin in the order of its energy: problem, basin, energy, energy_at_foot_points,
-  /// then for each solver how many of its runs end there and the median of their seconds.
+  /// A row per basin in the order of its energy: problem, basin, energy, energy_at_foot_points, its
+  /// curve's length, turning, num_free_loops and max_distance_to_data (CurveShape; "-" in dimension
+  /// 1), then for each solver how many of its runs end there and the median of their seconds.
   CsvTable basins;
   /// A row per run: problem, solver, start, status, iterations, seconds, energy, basin, polished.
   CsvTable runs;
