@@ -51,11 +51,20 @@ class StartContext final : public RunContext {
   StopReason reason_ = StopReason::kNotRun;
 };
 
+/// Moves free parameters to the feet, where the problem has a view that knows them.
+Status GoToFeet(Objective* objective, int threads, Eigen::VectorXd* x) {
+  const CurveFit& fit = *objective->problem().curve_fit();
+  if (!fit.has_free_parameters() || objective->free_view() == nullptr) return Status::kOk;
+  Eigen::VectorXd all = objective->Expand(*x);
+  const Status status = ProjectParameters(objective, threads, *x, &all);
+  if (status == Status::kOk) *x = objective->problem().elimination().FreeVariables(all);
+  return status;
+}
+
 /// Every control point moved by up to `radius` in each coordinate, free parameters at the feet.
 Status Disturb(Objective* objective, double radius, int threads, std::mt19937_64* random,
                Eigen::VectorXd* x) {
   const CurveFit& fit = *objective->problem().curve_fit();
-  const LinearElimination& elimination = objective->problem().elimination();
   Eigen::VectorXd all = objective->Expand(*x);
   const auto num_coordinates =
       static_cast<Eigen::Index>(fit.basis().num_control_points()) * fit.dimension();
@@ -64,11 +73,8 @@ Status Disturb(Objective* objective, double radius, int threads, std::mt19937_64
     const double unit = std::ldexp(static_cast<double>((*random)() >> 11), -53);
     coordinate += radius * (2.0 * unit - 1.0);
   }
-  *x = elimination.FreeVariables(all);
-  if (!fit.has_free_parameters() || objective->free_view() == nullptr) return Status::kOk;
-  const Status status = ProjectParameters(objective, threads, *x, &all);
-  if (status == Status::kOk) *x = elimination.FreeVariables(all);
-  return status;
+  *x = objective->problem().elimination().FreeVariables(all);
+  return GoToFeet(objective, threads, x);
 }
 
 /// Root mean square distance of the control points from their mean.
@@ -131,8 +137,10 @@ Outcome BestOfSolver::DoMinimize(Objective* objective, RunContext* context, Eige
     StartContext inner(objective->problem(), steps_, context);
     base_->Minimize(objective, &inner, &end);
     if (context->stop_reason() != StopReason::kNotRun) return {context->stop_reason(), ""};
+    // Ends are compared as curves are, by E at the feet, and the best goes on from there.
     double energy = 0.0;
-    status = objective->Energy(end, &energy);
+    status = GoToFeet(objective, context->threads(), &end);
+    if (status == Status::kOk) status = objective->Energy(end, &energy);
     if (status == Status::kStop) return {context->stop_reason(), ""};
     if (status == Status::kNonFinite || !(energy < lowest)) continue;
     lowest = energy;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "splines/closest_point.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
@@ -33,6 +34,26 @@ TEST(BestOf, BooksNothingHigherThanWhatItHas) {
       before = energy;
     }
   }
+}
+
+TEST(BestOf, ComparesEndsAtTheirFeetAndGoesOnFromThere) {
+  const auto problem = MakeFileFit("animals/cat_110.csv", MakeFreeSpec(3, true, 12));
+  const CurveFit& fit = *problem->curve_fit();
+  const auto at_feet = [&](const Eigen::VectorXd& x) {
+    const BsplineCurve curve = fit.Curve(x);
+    Eigen::VectorXd feet = fit.Parameters(x);
+    Eigen::VectorXd squared_distances;
+    ClosestPoint(curve).FindAll(fit.data().points, 1, &feet, &squared_distances);
+    return squared_distances.sum() / problem->units().energy;
+  };
+  // Five steps of a method that does not project leave t behind.
+  SolverTrial alone(*problem, "lbfgs", {5});
+  ASSERT_GT(alone.context.Energy(alone.x), 1.01 * at_feet(alone.x));
+  SolverTrial several(*problem, "best_of/starts=3/steps=5:lbfgs");
+  ASSERT_GT(several.context.iterates().size(), 2U);
+  const Eigen::VectorXd& first_end = several.context.iterates()[1];
+  const double energy = several.context.Energy(first_end);
+  EXPECT_NEAR(at_feet(first_end), energy, 1e-9 * energy);
 }
 
 TEST(BestOf, DisturbsTheStartByNothingIfSoAsked) {
