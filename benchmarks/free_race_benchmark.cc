@@ -1,6 +1,7 @@
 // Free parameters: time of each method from the same starts to a gap of 1e-6 to the minimum of the
-// basin it ends in, and the time of one iteration of lm_schur per point. Prints a Markdown page.
-//   free_race_benchmark [STARTS] [SECONDS]   starts per outline (20), most seconds per run (5)
+// basin it ends in, beside ours in the pairs of runs that end in one basin. Prints a Markdown page.
+//   free_race_benchmark [--starts=20] [--seconds=0.4]   starts per outline, most seconds per run
+// At the defaults it is done in less than a quarter of an hour.
 
 #include <lbfgs.h>
 
@@ -9,19 +10,29 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "experiments/comparison.h"
+#include "experiments/csv_table.h"
 #include "experiments/start_comparison.h"
+#include "problems/data_folders.h"
 #include "problems/objective.h"
-#include "solvers/foot_model.h"
 
 namespace batten {
 namespace {
 
 constexpr double kGap = 1e-6;
 constexpr const char* kLibLbfgs = "libLBFGS";
+
+[[noreturn]] void Fail(const std::string& why) {
+  std::fprintf(stderr, "free_race_benchmark: %s\n", why.c_str());
+  std::exit(2);
+}
 
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -83,9 +94,13 @@ double SecondsToGap(const Trace& trace, double start, double minimum) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// One run; its time to the gap of its own basin, and the energy at foot points of that basin.
-void RunOnce(const Problem& problem, const std::string& solver, double most_seconds,
-             double* seconds, double* energy) {
+/// Where a run of a method from a start has led, and how soon.
+struct Arrival {
+  double seconds = std::numeric_limits<double>::infinity();  // to the gap
+  BasinEnd basin;
+};
+
+Arrival RunOnce(const Problem& problem, const std::string& solver, double most_seconds) {
   Trace trace;
   Eigen::VectorXd end;
   double unit = 1.0;
@@ -104,8 +119,7 @@ void RunOnce(const Problem& problem, const std::string& solver, double most_seco
     spec.max_iterations = 100'000;
     RunResult run;
     if (!ParseNameSpec(solver, &name, &error) || !Run(problem, name, spec, &run, &error)) {
-      std::fprintf(stderr, "%s: %s\n", solver.c_str(), error.c_str());
-      std::exit(1);
+      Fail(solver + ": " + error);
     }
     for (const TraceRow& row : run.trace) {
       trace.seconds.push_back(row.seconds);
@@ -115,15 +129,94 @@ void RunOnce(const Problem& problem, const std::string& solver, double most_seco
     end = run.x;
   }
   for (double& value : trace.energies) value *= unit;
-  const BasinEnd basin = Polish(problem, end);
+  constexpr double kPolishSeconds = 0.25;
+  Arrival arrival;
+  arrival.basin = Polish(problem, end, kPolishSeconds);
+  if (trace.energies.empty()) return arrival;
   // A run that is far from where polishing leads has not reached its basin.
-  *seconds = SecondsToGap(trace, start, std::min(basin.energy, trace.energies.back()));
-  const bool arrived = trace.energies.back() - basin.energy <= 1e-3 * (start - basin.energy);
-  if (!arrived) *seconds = std::numeric_limits<double>::infinity();
-  *energy = basin.energy_at_foot_points;
+  const double minimum = arrival.basin.energy;
+  if (trace.energies.back() - minimum <= 1e-3 * (start - minimum)) {
+    arrival.seconds = SecondsToGap(trace, start, std::min(minimum, trace.energies.back()));
+  }
+  return arrival;
+}
+
+/// Closed outlines in the plane of at most so many points: 300 runs of a method on longer ones
+/// would take hours, and the longer animals are these again.
+std::vector<std::string> Outlines() {
+  constexpr double kMostPoints = 200.0;
+  std::ifstream file(DataRoot() + "/data/manifest.csv");
+  std::stringstream text;
+  text << file.rdbuf();
+  CsvTable manifest;
+  std::string error;
+  if (!CsvTable::FromCsv(text.str(), &manifest, &error)) Fail("data/manifest.csv: " + error);
+  const CsvTable closed = manifest.Where("kind", "closed").Where("dim", "2");
+  std::vector<std::string> outlines;
+  for (std::size_t row = 0; row < closed.num_rows(); ++row) {
+    if (closed.Number(row, "points") <= kMostPoints) outlines.push_back(closed.Text(row, "file"));
+  }
+  return outlines;
+}
+
+std::unique_ptr<Problem> OutlineFit(const std::string& outline) {
+  std::string error;
+  std::optional<DataSet> data = ReadDataSet(DataRoot() + "/data/" + outline, &error);
+  if (!data) Fail(error);
+  FitSpec spec;
+  spec.closed = true;
+  spec.control_points = 12;
+  spec.parameter_kind = ParameterKind::kFree;
+  spec.start = "circle";
+  std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), spec, &error);
+  if (problem == nullptr) Fail(outline + ": " + error);
+  return problem;
+}
+
+/// Of the pairs of runs from one start whose ends are polished to one curve: how many there are,
+/// and the median of the ratio of times. Pairs of which neither arrives say nothing.
+struct PairedTimes {
+  int pairs = 0;
+  double ratio = std::numeric_limits<double>::quiet_NaN();
+};
+
+PairedTimes Pair(const std::vector<std::unique_ptr<Problem>>& problems,
+                 const std::vector<Arrival>& of, const std::vector<Arrival>& ours) {
+  std::vector<double> ratios;
+  const std::size_t starts = of.size() / problems.size();
+  for (std::size_t k = 0; k < of.size(); ++k) {
+    const BasinEnd& a = of[k].basin;
+    const BasinEnd& b = ours[k].basin;
+    if (!a.polished || !b.polished) continue;
+    if (std::isinf(of[k].seconds) && std::isinf(ours[k].seconds)) continue;
+    const std::vector<int> basins = FindBasins(*problems[k / starts], {a, b});
+    if (basins[0] == basins[1]) ratios.push_back(of[k].seconds / ours[k].seconds);
+  }
+  PairedTimes paired;
+  paired.pairs = static_cast<int>(ratios.size());
+  if (paired.pairs > 0) paired.ratio = Median(ratios);
+  return paired;
+}
+
+void PrintRow(const std::string& solver, const std::vector<Arrival>& arrivals,
+              const std::vector<PairedTimes>& paired) {
+  int reached = 0;
+  double log_energy = 0.0;
+  for (const Arrival& arrival : arrivals) {
+    reached += std::isfinite(arrival.seconds) ? 1 : 0;
+    log_energy += std::log(arrival.basin.energy_at_foot_points);
+  }
+  std::vector<double> seconds;
+  for (const Arrival& arrival : arrivals) seconds.push_back(arrival.seconds);
+  std::printf("| `%s` | %d of %zu | %.3g |", solver.c_str(), reached, arrivals.size(),
+              1e3 * Median(seconds));
+  for (const PairedTimes& times : paired) std::printf(" %d | %.3g |", times.pairs, times.ratio);
+  std::printf(" %.4g |\n", std::exp(log_energy / static_cast<double>(arrivals.size())));
 }
 
 void Race(int starts, double most_seconds) {
+  // Ours first: the others are held against these.
+  const std::vector<std::string> ours = {"foot_newton", "newton"};
   const std::vector<std::string> solvers = {"foot_newton",  "newton",
                                             "lm_schur",     "varpro",
                                             "sdm",          "tdm",
@@ -131,105 +224,70 @@ void Race(int starts, double most_seconds) {
                                             "anderson:pdm", "anderson/window=10:pdm",
                                             "lbfgs",        "ceres_lbfgs",
                                             kLibLbfgs,      "ceres_lm"};
+  std::vector<std::unique_ptr<Problem>> problems;
+  for (const std::string& outline : Outlines()) problems.push_back(OutlineFit(outline));
   std::printf(
-      "| method | median ms to gap 1e-6 | 90 %% below, ms | reached | times foot_newton | "
-      "geometric "
-      "mean of E at feet |\n|---|---|---|---|---|---|\n");
-  double ours = 0.0;
+      "%zu outlines of at most 200 points.\n\n"
+      "| method | reached | median ms | pairs with `%s` | times its time | pairs with `%s` | times "
+      "its time | geometric mean of E at feet |\n|---|---|---|---|---|---|---|---|\n",
+      problems.size(), ours[0].c_str(), ours[1].c_str());
+  std::map<std::string, std::vector<Arrival>> arrivals;
   for (const std::string& solver : solvers) {
-    std::vector<double> seconds;
-    double log_energy = 0.0;
-    int reached = 0;
-    for (const char* outline : {"rhino_free", "squirrel_free", "dolphin_free", "cat_free"}) {
-      CatalogueEntry entry;
-      std::string error;
-      FindProblem(outline, &entry, &error);
-      const auto problem = LoadProblem(entry, &error);
+    std::fprintf(stderr, "%s\n", solver.c_str());
+    for (const auto& problem : problems) {
       for (int k = 0; k < starts; ++k) {
+        std::string error;
         const auto from = FromDisturbedCircle(*problem, 0.3, 1, k, &error);
-        double time = 0.0, energy = 0.0;
-        RunOnce(*from, solver, most_seconds, &time, &energy);
-        seconds.push_back(time);
-        log_energy += std::log(energy);
-        reached += std::isfinite(time) ? 1 : 0;
+        if (from == nullptr) Fail(error);
+        arrivals[solver].push_back(RunOnce(*from, solver, most_seconds));
       }
     }
-    std::sort(seconds.begin(), seconds.end());
-    const double median = Median(seconds);
-    if (ours == 0.0) ours = median;
-    const double high = seconds[seconds.size() * 9 / 10];
-    std::printf("| `%s` | %.3g | %.3g | %d of %zu | %.3g | %.4g |\n", solver.c_str(), 1e3 * median,
-                1e3 * high, reached, seconds.size(), median / ours,
-                std::exp(log_energy / static_cast<double>(seconds.size())));
-    std::fflush(stdout);
   }
-}
-
-/// A bent loop with noise, free parameters from the data's own.
-std::unique_ptr<Problem> Loop(int m, int n) {
-  DataSet data;
-  data.points.resize(m, 2);
-  for (int i = 0; i < m; ++i) {
-    const double a = 2.0 * M_PI * i / m;
-    const double r = 1.0 + 0.3 * std::cos(3.0 * a + 0.7) + 0.01 * std::sin(977.0 * i);
-    data.points.row(i) << r * std::cos(a), r * std::sin(a);
-  }
-  FitSpec spec;
-  spec.closed = true;
-  spec.control_points = n;
-  spec.parameter_kind = ParameterKind::kFree;
-  std::string error;
-  return MakeFitProblem(std::move(data), spec, &error);
-}
-
-/// Sums, factorization and the parameters' steps: an iteration of lm_schur whose step is taken.
-void IterationPerPoint() {
-  std::printf(
-      "\n| points | control points | sums, ns per point | steps | factor | together |\n"
-      "|---|---|---|---|---|---|\n");
-  for (const int m : {1000, 10'000, 100'000, 1'000'000}) {
-    const int n = std::max(20, m / 1000);
-    const auto problem = Loop(m, n);
-    const Objective objective(problem.get(), nullptr);
-    FootModel model(*objective.free_view(), 1);
-    const Eigen::VectorXd x = objective.start();
-    Eigen::VectorXd step, next;
-    const int rounds = std::max(3, 3'000'000 / m);
-    double parts[3] = {};
-    for (int round = -1; round < rounds; ++round) {
-      const double t0 = Now();
-      model.Sum(x, FootModelKind::kTangent, 1e-3);
-      const double t1 = Now();
-      model.Factor(1e-3);
-      model.Solve(&step);
-      const double t2 = Now();
-      model.Move(x, step, &next);
-      const double t3 = Now();
-      if (round < 0) continue;  // caches
-      parts[0] += t1 - t0;
-      parts[1] += t3 - t2;
-      parts[2] += t2 - t1;
+  for (const std::string& solver : solvers) {
+    std::vector<PairedTimes> paired;
+    for (const std::string& one : ours) {
+      paired.push_back(Pair(problems, arrivals[solver], arrivals[one]));
     }
-    for (double& part : parts) part *= 1e9 / rounds / m;
-    std::printf("| %d | %d | %.1f | %.1f | %.1f | %.1f |\n", m, n, parts[0], parts[1], parts[2],
-                parts[0] + parts[1] + parts[2]);
+    PrintRow(solver, arrivals[solver], paired);
   }
+}
+
+/// The value of "--name=VALUE", a number from `least` on; fails for any other.
+double FlagValue(const std::string& argument, double least) {
+  const std::string text = argument.substr(argument.find('=') + 1);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(value >= least) || !std::isfinite(value)) {
+    Fail(argument + ": a number from " + std::to_string(least) + " on is needed");
+  }
+  return value;
 }
 
 }  // namespace
 }  // namespace batten
 
 int main(int argc, char** argv) {
-  const int starts = argc > 1 ? std::atoi(argv[1]) : 20;
-  const double seconds = argc > 2 ? std::atof(argv[2]) : 5.0;
+  int starts = 20;
+  double seconds = 0.4;
+  for (int k = 1; k < argc; ++k) {
+    const std::string argument = argv[k];
+    if (argument.rfind("--starts=", 0) == 0) {
+      starts = static_cast<int>(std::min(batten::FlagValue(argument, 1.0), 1e6));
+    } else if (argument.rfind("--seconds=", 0) == 0) {
+      seconds = batten::FlagValue(argument, 1e-3);
+    } else {
+      batten::Fail("unknown argument " + argument + "; known: --starts=N --seconds=S");
+    }
+  }
   std::printf(
-      "# Free parameters\n\nFour outlines of 80 to 120 points, 12 control points, %d "
-      "disturbed circles each, one thread. A run's time is that to a gap of 1e-6 to the "
-      "minimum of its own basin, found by polishing its end; runs that do not arrive in "
-      "%g s count as slowest.\n\n",
+      "# Free parameters\n\nClosed outlines, 12 control points, %d disturbed circles each, one "
+      "thread. A run's time is that to a gap of 1e-6 to the minimum of its own basin, found by "
+      "polishing its end; runs that do not arrive in %g s count as slowest. Two runs from one "
+      "start "
+      "are a pair where both ends are polished to one curve (1e-6 of the size), and *times its "
+      "time* "
+      "is the median over pairs of the ratio of their times. ",
       starts, seconds);
   batten::Race(starts, seconds);
-  std::printf("\nOne iteration of `lm_schur`, one core, cubic in the plane:\n");
-  batten::IterationPerPoint();
   return 0;
 }
