@@ -10,8 +10,8 @@
 namespace batten {
 namespace {
 
-/// All that are registered and take `problem`, without those that wrap another and those that search
-/// the feet in every step: these lower E(P).
+/// All that are registered and take `problem`, without those that wrap another and those that
+/// search the feet in every step: these lower E(P).
 std::vector<std::string> JointSolvers(const Problem& problem) {
   const Objective objective(&problem, nullptr);
   std::vector<std::string> names;
