@@ -1,6 +1,7 @@
 #include "problems/free_view.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace batten {
 
@@ -50,6 +51,30 @@ Eigen::VectorXd FreeView::WithoutParameters(const Eigen::VectorXd& all) const {
   return projected() ? all.head(sites_->parameter_offset) : all;
 }
 
+bool FreeView::IsOnControlPoints(const BlockFamily& term, const Eigen::VectorXd& any) const {
+  const BsplineBasis& basis = *sites_->basis;
+  const int n = num_control_points();
+  std::vector<int> offsets, sizes;
+  for (int block = 0; block < term.size(); ++block) {
+    term.Bind(any, block, &offsets, &sizes);
+    std::vector<int> points;
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      const int place = offsets[k] - sites_->control_point_offset;
+      if (place < 0 || place % dimension() != 0 || place / dimension() >= n) return false;
+      if (sizes[k] != dimension()) return false;
+      points.push_back(place / dimension());
+    }
+    for (const int a : points) {
+      for (const int b : points) {
+        const int apart = std::abs(a - b);
+        const int reach = basis.periodic() ? std::min(apart, n - apart) : apart;
+        if (reach > basis.degree()) return false;
+      }
+    }
+  }
+  return true;
+}
+
 std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {
   if (problem.nonlinear_constraints() != nullptr) return nullptr;
   std::unique_ptr<FreeView> view(new FreeView);
@@ -59,11 +84,16 @@ std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {
       view->sites_ = term.family->free_sites();
     } else if (term.family->rows() != nullptr) {
       rows.push_back(term.family->rows());
+    } else if (term.family->free_sites() == nullptr && term.family->loss() == nullptr) {
+      view->curved_terms_.push_back(term.family.get());
     } else {
       return nullptr;
     }
   }
   if (view->sites_ == nullptr) return nullptr;
+  for (const BlockFamily* term : view->curved_terms_) {
+    if (!view->IsOnControlPoints(*term, problem.start())) return nullptr;
+  }
   if (!view->ReadConstraints(problem)) return nullptr;
   if (!rows.empty()) {
     auto band = std::make_unique<NormalBand>(rows.front()->shape());

@@ -12,8 +12,9 @@ namespace batten {
 /// A problem E(P, t) = sum_i w_i |C(t_i) - Q_i|^2 + ||A P - B||^2 with the parameters t as
 /// variables, as methods see it that know this structure: one free_parameter term, any number of
 /// terms that are compiled rows, and linear constraints that bind control points to each other or
-/// hold parameters. Or the same with t projected (one foot_point term): P alone is variable then,
-/// and methods keep t behind it in vectors of their own.
+/// hold parameters. Beside them any terms in control points that are not affine, without loss. Or
+/// the same with t projected (one foot_point term): P alone is variable then, and methods keep t
+/// behind it in vectors of their own.
 class FreeView {
  public:
   /// Null for any other problem.
@@ -40,16 +41,22 @@ class FreeView {
   Eigen::VectorXd WithoutParameters(const Eigen::VectorXd& all) const;
   /// A'A and A'B of the other terms; null where there are none.
   const NormalBand* other_terms() const { return other_terms_.get(); }
+  /// Terms in control points alone that are no compiled rows, such as curve_fairing; each of their
+  /// blocks depends on p + 1 neighbours at most.
+  const std::vector<const BlockFamily*>& curved_terms() const { return curved_terms_; }
 
  private:
   FreeView() = default;
   /// False if constraints do anything else than bind control points and hold parameters.
   bool ReadConstraints(const Problem& problem);
+  /// Whether the blocks of a term depend on p + 1 neighbouring control points and nothing else.
+  bool IsOnControlPoints(const BlockFamily& term, const Eigen::VectorXd& any) const;
 
   const FreeSites* sites_ = nullptr;
   std::vector<char> held_;  // empty: none
   SparseRows map_;          // no rows: the identity
   std::unique_ptr<const NormalBand> other_terms_;
+  std::vector<const BlockFamily*> curved_terms_;
 };
 
 }  // namespace batten

@@ -32,7 +32,7 @@ std::vector<OptionInfo> ModelOptions(double damping) {
 }  // namespace
 
 std::string FootIteration::WhyUnsupported(const Objective& objective) const {
-  return WhyNoFreeView(objective, Info().name);
+  return WhyNoAffineTerms(objective, Info().name);
 }
 
 std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {

@@ -36,8 +36,9 @@ FootModel::FootModel(const FreeView& view, int threads)
       local_(order_ * dimension_),
       band_(BlockBandShape(view)),
       damped_(BlockBandShape(view)),
-      diagonal_(static_cast<std::size_t>(basis_.num_control_points())),
+      diagonal_(static_cast<std::size_t>(basis_.num_control_points()) * dimension_),
       added_(diagonal_.size()),
+      curved_terms_(view),
       half_gradient_(band_.size()),
       map_(view.control_point_map()) {
   if (map_ != nullptr) {
@@ -167,29 +168,34 @@ bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping
   AssembleBand();
   energy_ = 0.0;
   for (const double part : span_energies_) energy_ += part;
-  if (const NormalBand* other = view_.other_terms()) {
-    const int n = basis_.num_control_points(), d = dimension_;
-    Points& residual = other_residual_;
-    residual.resize(n, d);
-    other->NormalResidual(control_points, residual.data());
-    const Eigen::Map<const Points> at(control_points, n, d);
-    // |A P - B|^2 = |B|^2 - P'(A'B) - P'(A'B - A'A P)
-    energy_ += other->squared_norm_of_data() - at.cwiseProduct(other->right_hand_side()).sum() -
-               at.cwiseProduct(residual).sum();
-    half_gradient_ -= Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size());
-    for (int j = 0; j < n; ++j) {
-      for (int l = 0; l < other->width(); ++l) {
-        const double entry = other->band()[static_cast<std::size_t>(j) * other->width() + l];
-        for (int e = 0; e < d; ++e) {
-          band_.band()[static_cast<std::size_t>(j * d + e) * band_.width() + l * d] += entry;
-        }
-      }
-      diagonal_[static_cast<std::size_t>(j)] +=
-          other->band()[static_cast<std::size_t>(j) * other->width()];
-    }
-  }
+  AddOtherTerms(control_points);
+  const bool exact = kind == FootModelKind::kNewton;
+  if (!curved_terms_.AddTo(x, exact, &energy_, &half_gradient_, &band_, &diagonal_)) return false;
   if (map_ != nullptr) free_half_gradient_.noalias() = map_->transpose() * half_gradient_;
   return std::isfinite(energy_) && half_gradient_.allFinite();
+}
+
+void FootModel::AddOtherTerms(const double* control_points) {
+  const NormalBand* other = view_.other_terms();
+  if (other == nullptr) return;
+  const int n = basis_.num_control_points(), d = dimension_;
+  Points& residual = other_residual_;
+  residual.resize(n, d);
+  other->NormalResidual(control_points, residual.data());
+  const Eigen::Map<const Points> at(control_points, n, d);
+  // |A P - B|^2 = |B|^2 - P'(A'B) - P'(A'B - A'A P)
+  energy_ += other->squared_norm_of_data() - at.cwiseProduct(other->right_hand_side()).sum() -
+             at.cwiseProduct(residual).sum();
+  half_gradient_ -= Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size());
+  for (int j = 0; j < n; ++j) {
+    for (int l = 0; l < other->width(); ++l) {
+      const double entry = other->band()[static_cast<std::size_t>(j) * other->width() + l];
+      for (int e = 0; e < d; ++e) {
+        band_.band()[static_cast<std::size_t>(j * d + e) * band_.width() + l * d] += entry;
+        if (l == 0) diagonal_[static_cast<std::size_t>(j * d + e)] += entry;
+      }
+    }
+  }
 }
 
 void FootModel::AssembleBand() {
@@ -209,8 +215,8 @@ void FootModel::AssembleBand() {
           band[column - row] += sums[row * size + column];
         }
         half_gradient_[index * d + e] += sums[size * size + row];
+        diagonal_[static_cast<std::size_t>(index * d + e)] += sums[size * size + size + j];
       }
-      diagonal_[static_cast<std::size_t>(index)] += sums[size * size + size + j];
     }
   }
 }
@@ -222,12 +228,9 @@ bool FootModel::Factor(double damping) {
   mean /= static_cast<double>(diagonal_.size());
   // Control points without data have no diagonal of their own.
   constexpr double kLeast = 1e-3;
-  for (int j = 0; j < basis_.num_control_points(); ++j) {
-    const double added = damping * std::max(diagonal_[static_cast<std::size_t>(j)], kLeast * mean);
-    added_[static_cast<std::size_t>(j)] = added;
-    for (int e = 0; e < dimension_; ++e) {
-      damped_.band()[static_cast<std::size_t>(j * dimension_ + e) * damped_.width()] += added;
-    }
+  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+    added_[k] = damping * std::max(diagonal_[k], kLeast * mean);
+    damped_.band()[k * static_cast<std::size_t>(damped_.width())] += added_[k];
   }
   if (map_ == nullptr) return cholesky_.Factor(damped_);
   free_band_.Sum(damped_);
@@ -301,9 +304,9 @@ double FootModel::Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step,
   // of every parameter.
   double decrease = -half_gradient_.dot(step);
   for (const double part : span_decreases_) decrease += part;
-  for (std::size_t j = 0; j < added_.size(); ++j) {
-    const auto place = static_cast<Eigen::Index>(j) * dimension_;
-    decrease += added_[j] * step.segment(place, dimension_).squaredNorm();
+  for (std::size_t k = 0; k < added_.size(); ++k) {
+    const double moved = step[static_cast<Eigen::Index>(k)];
+    decrease += added_[k] * moved * moved;
   }
   return decrease;
 }

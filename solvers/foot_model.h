@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "problems/free_view.h"
+#include "solvers/curved_terms.h"
 #include "solvers/worker_pool.h"
 #include "splines/banded_cholesky.h"
 #include "splines/normal_band.h"
@@ -25,9 +26,10 @@ enum class FootModelKind {
 /// The reduced model of a free problem in its band (blocks of d x d, bandwidth (p + 1) d), the
 /// border of closed curves included: one pass over the points, sums of each span in their own
 /// place, so that the bits do not depend on the number of threads. Where constraints bind control
-/// points, P = offset + Z y, steps are those of y, from the band of Z'(half Hessian) Z.
-/// Sum, Factor, Solve, Move and ImproveFeet allocate nothing after their first call, but for what
-/// BandedCholesky says; the threads wait for the next pass.
+/// points, P = offset + Z y, steps are those of y, from the band of Z'(half Hessian) Z. Terms that
+/// are not affine are summed by second derivatives for kNewton, else by Gauss and Newton's. Sum,
+/// Factor, Solve, Move and ImproveFeet allocate nothing after their first call, but for what
+/// BandedCholesky says and for terms that are not affine; the threads wait for the next pass.
 class FootModel {
  public:
   FootModel(const FreeView& view, int threads);
@@ -36,6 +38,10 @@ class FootModel {
   bool Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping);
   double energy() const { return energy_; }
   FootModelKind kind() const { return kind_; }
+  /// Products with second derivatives that a Sum of this kind takes.
+  int NumProducts(FootModelKind kind) const {
+    return kind == FootModelKind::kNewton ? curved_terms_.num_products() : 0;
+  }
   double parameter_damping() const { return damping_; }
   /// What E is a difference of: sum_i w_i |Q_i|^2, for its rounding.
   double scale() const { return scale_; }
@@ -84,6 +90,7 @@ class FootModel {
   template <typename Body>
   void ForEachShare(Body body);
   void AssembleBand();
+  void AddOtherTerms(const double* control_points);
   void LeaveEnds(double* parameters) const;
   std::size_t SpanStride() const {
     return static_cast<std::size_t>(local_) * (local_ + 1) + static_cast<std::size_t>(order_);
@@ -119,8 +126,9 @@ class FootModel {
   std::vector<double> span_decreases_;
   NormalBand band_;
   NormalBand damped_;
-  std::vector<double> diagonal_;  // n: of the half Hessian for a = 0
-  std::vector<double> added_;     // n: to the half Hessian by Factor
+  std::vector<double> diagonal_;  // n d: of Gauss and Newton's half Hessian for a = 0
+  std::vector<double> added_;     // n d: to the half Hessian by Factor
+  CurvedTerms curved_terms_;
   Eigen::VectorXd half_gradient_;
   Points other_residual_;      // of the other terms
   const SparseRows* map_;      // Z; null: the identity

@@ -29,8 +29,15 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   std::string why_no_order = WhyNoOrder(objective.problem(), name);
   if (!why_no_order.empty()) return why_no_order;
   return name +
-         " takes one free_parameter or foot_point term without loss, terms that are affine, and "
-         "constraints that are linear in the control points or hold parameters; use lbfgs";
+         " takes one free_parameter or foot_point term without loss, terms in control points "
+         "without loss, and constraints that are linear in the control points or hold parameters; "
+         "use lbfgs";
+}
+
+std::string WhyNoAffineTerms(const Objective& objective, const std::string& name) {
+  std::string why = WhyNoFreeView(objective, name);
+  if (!why.empty() || objective.free_view()->curved_terms().empty()) return why;
+  return name + " takes terms that are affine beside free_parameter or foot_point; use newton";
 }
 
 std::string WhyNoFreeParameters(const Objective& objective, const std::string& name) {
@@ -60,9 +67,17 @@ double JointDescent::Noise(double energy) const {
   return Objective::EnergyRoundingFloor(energy, 2.0 * std::sqrt(here_->scale()));
 }
 
+bool JointDescent::AllowSum(FootModelKind kind, const Eigen::VectorXd& free) {
+  if (!objective()->Allow(Evaluation::kJacobian, &free)) return false;
+  for (int k = here_->NumProducts(kind); k > 0; --k) {
+    if (!objective()->Allow(Evaluation::kProduct, nullptr)) return false;
+  }
+  return true;
+}
+
 Status JointDescent::SumHere(FootModelKind kind) {
   FreeVariablesOf(*objective(), all_, &free_);
-  if (!objective()->Allow(Evaluation::kJacobian, &free_)) return Status::kStop;
+  if (!AllowSum(kind, free_)) return Status::kStop;
   return here_->Sum(all_, kind, damping_) ? Status::kOk : Status::kNonFinite;
 }
 
@@ -128,7 +143,7 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
       continue;
     }
     FreeVariablesOf(*objective(), next_, &free_);
-    if (!objective()->Allow(Evaluation::kJacobian, &free_)) return Ended(Status::kStop);
+    if (!AllowSum(kind_, free_)) return Ended(Status::kStop);
     const double before = here_->energy();
     const bool finite = there_->Sum(next_, kind_, ParameterDamping());
     const double fall = before - there_->energy();

@@ -35,6 +35,8 @@ class JointDescent : public Stepper {
   Status GoTo(const Eigen::VectorXd& all, Eigen::VectorXd* x);
 
  private:
+  /// Counts a pass over the data that sums a model, and the products that go with it.
+  bool AllowSum(FootModelKind kind, const Eigen::VectorXd& free);
   /// Sums the model at all_, a counted pass over the data.
   Status SumHere(FootModelKind kind);
   double ParameterDamping() const;
@@ -59,7 +61,9 @@ class JointDescent : public Stepper {
 
 /// What a free problem's view is missing, as one sentence; empty: nothing.
 std::string WhyNoFreeView(const Objective& objective, const std::string& name);
-/// The same for methods that move parameters by themselves: these must not be projected.
+/// The same for methods that take no terms but affine ones beside that of the points.
+std::string WhyNoAffineTerms(const Objective& objective, const std::string& name);
+/// As WhyNoFreeView for methods that move parameters by themselves: these must not be projected.
 std::string WhyNoFreeParameters(const Objective& objective, const std::string& name);
 
 }  // namespace batten

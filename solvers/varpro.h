@@ -13,7 +13,8 @@ class VarproSolver final : public JointDescent {
   explicit VarproSolver(const OptionValues& /*options*/) : JointDescent(FootModelKind::kTangent) {}
   SolverInfo Info() const override { return ClassInfo(); }
   std::string WhyUnsupported(const Objective& objective) const override {
-    return WhyNoFreeParameters(objective, Info().name);
+    const std::string why = WhyNoFreeParameters(objective, Info().name);
+    return why.empty() ? WhyNoAffineTerms(objective, Info().name) : why;
   }
 
  private:

@@ -5,8 +5,8 @@
 
 namespace batten {
 
-// Eigen's decompositions of small dense matrices, compiled once: each place that used them by itself
-// took the compiler as long as a whole solver.
+// Eigen's decompositions of small dense matrices, compiled once: each place that used them by
+// itself took the compiler as long as a whole solver.
 
 /// |l| of all n eigenvalues of a general n x n matrix, in no order.
 Eigen::VectorXd EigenvalueSizes(const Eigen::MatrixXd& matrix);

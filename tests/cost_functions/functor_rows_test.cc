@@ -50,9 +50,9 @@ void ExpectSameBits(const ExampleFit& fit) {
   rows.StreamOnAnyProcessor(0.75, 0, num_groups, &anywhere);
   ASSERT_EQ(here.values.size(), anywhere.values.size());
   ASSERT_GT(here.values.size(), 0u);
-  EXPECT_EQ(std::memcmp(here.values.data(), anywhere.values.data(),
-                        here.values.size() * sizeof(double)),
-            0);
+  EXPECT_EQ(
+      std::memcmp(here.values.data(), anywhere.values.data(), here.values.size() * sizeof(double)),
+      0);
 }
 
 // 300 points in a few spans: whole packs, the rest of one, and blocks that are full. On a processor

@@ -33,6 +33,13 @@ std::vector<ModelCase> ModelCases() {
       return MakeFit(data, MakeFreeSpec(degree, true, n, "ellipse"));
     };
   };
+  const auto closed_and_fair = [](int n) {
+    return [=] {
+      return MakeFit(
+          MakeNoisyLoop(50, 2, 480u + static_cast<unsigned>(n)),
+          MakeFreeSpec(3, true, n, "ellipse", "free_parameter,curve_fairing/weight=1e-3"));
+    };
+  };
   const auto open = [](int degree, int dimension, bool hold_ends, const std::string& terms) {
     return [=] {
       FitSpec spec = MakeFreeSpec(degree, false, 11, "data", terms);
@@ -50,6 +57,12 @@ std::vector<ModelCase> ModelCases() {
       {"OpenCubic", open(3, 2, false, "free_parameter")},
       {"OpenEndsHeld", open(4, 3, true, "free_parameter")},
       {"OpenWithAnAffineTerm", open(3, 3, false, "free_parameter,interpolation/weight=0.3")},
+      {"OpenWithBending", open(3, 2, false, "free_parameter,curve_fairing/weight=1e-3")},
+      {"OpenInSpaceWithVariationAndAnAffineTerm",
+       open(4, 3, true,
+            "free_parameter,fairing/weight=1e-5,curve_fairing/measure=variation/weight=1e-9")},
+      {"ClosedWithBending", closed_and_fair(12)},
+      {"ClosedOverlappingBandWithBending", closed_and_fair(5)},
   };
 }
 
