@@ -65,12 +65,16 @@ bool FindFairingTerm(FairingRule rule, FitSpec* spec, std::size_t* index, std::s
 
 class Chooser {
  public:
-  /// `unit`: of energies in the user's units; `noise` in these too.
-  Chooser(const SmoothingFamily& family, FairingRule rule, double unit, int dimension, double noise)
+  /// `unit`: of energies in the user's units; `noise` in these too. `dimension`: coordinates that
+  /// a row of the family stands for; `systems`: that are unknowns of one system, 1 where each has
+  /// the same one.
+  Chooser(const SmoothingFamily& family, FairingRule rule, double unit, int dimension, int systems,
+          double noise)
       : family_(family),
         rule_(rule),
         unit_(unit),
         num_residuals_(static_cast<double>(family.num_data()) * dimension),
+        systems_(systems),
         noise_(noise) {}
 
   bool Choose(FairingChoice* choice, std::string* error) {
@@ -98,7 +102,7 @@ class Chooser {
     if (family_.At(sample.weight, &member)) {
       sample.residual = member.residual * unit_;
       sample.bend = member.bend * unit_;
-      sample.trace = member.trace;
+      sample.trace = member.trace / systems_;
       sample.score = Score(sample);
     }
     samples_.push_back(sample);
@@ -112,7 +116,7 @@ class Chooser {
     if (rule_ == FairingRule::kLCurve) return 0.0;  // known once neighbours are
     // Where fewer degrees of freedom are left than roundings of the trace are worth, V is 0 / 0.
     constexpr double kLeastFreedom = 1e-6;
-    const double freedom = 1.0 - sample.trace / family_.num_data();
+    const double freedom = 1.0 - sample.trace * systems_ / family_.num_data();
     if (!(freedom > kLeastFreedom)) return std::numeric_limits<double>::infinity();
     return sample.residual / num_residuals_ / (freedom * freedom);
   }
@@ -244,6 +248,7 @@ class Chooser {
   FairingRule rule_;
   double unit_;
   double num_residuals_;  // m d
+  int systems_;
   double noise_;
   std::vector<FairingSample> samples_;
 };
@@ -281,14 +286,16 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   const auto data_view = CurveView::Make(*problem, others, nullptr);
   const auto fairing_view =
       CurveView::Make(*problem, {problem->terms()[fairing].family->rows()}, nullptr);
-  if (data_view == nullptr || fairing_view == nullptr ||
-      data_view->dimension() != problem->curve_fit()->dimension()) {
+  if (data_view == nullptr || fairing_view == nullptr) {
     *error = std::string("fairing=") + ToString(rule) +
-             " needs another term, and constraints that are linear and treat coordinates alike";
+             " needs another term, terms that are affine, and constraints that are linear";
     return false;
   }
   const SmoothingFamily family(data_view->row_source(), fairing_view->row_source());
-  Chooser chooser(family, rule, problem->units().energy, problem->curve_fit()->dimension(), noise);
+  // Constraints on single coordinates make one system of all of them.
+  const int dimension = data_view->dimension();
+  const int systems = problem->curve_fit()->dimension() / dimension;
+  Chooser chooser(family, rule, problem->units().energy, dimension, systems, noise);
   if (!chooser.Choose(choice, error)) return false;
   SetWeight(choice->weight, &spec->terms[fairing]);
   return true;

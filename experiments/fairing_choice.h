@@ -21,7 +21,7 @@ struct FairingSample {
   double weight = 0.0;
   double residual = 0.0;  ///< RSS: energy of the other terms, in the user's units.
   double bend = 0.0;      ///< Energy of the fairing term at weight 1.
-  double trace = 0.0;     ///< Effective number of control points.
+  double trace = 0.0;     ///< Effective number of control points, in the mean over coordinates.
   /// What the rule judges: V; RSS / (m d noise^2); curvature of the L.
   double score = 0.0;
 };

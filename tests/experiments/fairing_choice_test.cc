@@ -233,6 +233,57 @@ TEST(FairingChoice, ByTheLCurveLiesBetweenNoiseAndBend) {
   EXPECT_LE(curve.Error(choice.weight), 0.1 * curve.Error(1e6));
 }
 
+/// Dense algebra from the functors' own derivatives: the hat matrix A (A'A + w D'D)^-1 A' of what
+/// constraints leave, all coordinates together.
+TEST(FairingChoice, JudgesConstraintsOnSingleCoordinatesByTheHatMatrixOfAllOfThem) {
+  for (const char* constraints : {"point/t=0.3/x=0.4", "derivative/t=0/order=1/y=2,ends"}) {
+    SCOPED_TRACE(constraints);
+    NoisyCurve curve(11);
+    std::string error;
+    ASSERT_TRUE(ParseNameSpecList(constraints, &curve.spec.constraints, &error)) << error;
+    FitSpec asked = curve.spec;
+    FairingChoice choice;
+    ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &asked, &choice, &error))
+        << error;
+    ASSERT_TRUE(ParseNameSpecList("interpolation,fairing", &curve.spec.terms, &error)) << error;
+    const auto problem = MakeFitProblem(curve.data, curve.spec, &error);
+    ASSERT_NE(problem, nullptr) << error;
+    Objective objective(problem.get(), nullptr);
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(objective.num_variables());
+    Eigen::VectorXd residuals;
+    SparseRows sparse;
+    ASSERT_EQ(objective.Jacobian(zero, &residuals, &sparse), Status::kOk);
+    const Eigen::MatrixXd jacobian = sparse;
+    const Eigen::Index md = curve.data.points.size();
+    const Eigen::MatrixXd a = jacobian.topRows(md);
+    const Eigen::MatrixXd d = jacobian.bottomRows(jacobian.rows() - md);
+    // Rows that constraints leave nothing of are no data.
+    const auto num_data = static_cast<double>((a.rowwise().norm().array() > 1e-12).count());
+    int compared = 0;
+    double least = std::numeric_limits<double>::infinity(), chosen = least;
+    for (const FairingSample& sample : choice.samples) {
+      const Eigen::MatrixXd matrix = a.transpose() * a + sample.weight * d.transpose() * d;
+      const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
+      if (factor.rcond() < 1e-9) continue;  // normal equations have no digits to compare there
+      const Eigen::VectorXd y =
+          -factor.solve(a.transpose() * residuals.head(md) +
+                        sample.weight * d.transpose() * residuals.tail(d.rows()));
+      const double squared = (a * y + residuals.head(md)).squaredNorm() * problem->units().energy;
+      const double trace = (factor.solve(a.transpose()) * a).trace();
+      const double freedom = 1.0 - trace / num_data;
+      const double score = squared / num_data / (freedom * freedom);
+      EXPECT_NEAR(sample.residual, squared, 1e-6 * squared) << sample.weight;
+      EXPECT_NEAR(sample.trace, trace / curve.data.points.cols(), 1e-6 * trace) << sample.weight;
+      EXPECT_NEAR(sample.score, score, 1e-5 * score) << sample.weight;
+      least = std::min(least, score);
+      if (sample.weight == choice.weight) chosen = score;
+      ++compared;
+    }
+    EXPECT_GE(compared, 5);
+    EXPECT_NEAR(chosen, least, 1e-6 * least);
+  }
+}
+
 TEST(FairingChoice, RefusesWhatItCannotJudge) {
   const NoisyCurve curve(9);
   const auto why_not = [&](const std::string& terms, ParameterKind kind) {
