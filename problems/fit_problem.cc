@@ -278,7 +278,9 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   }
   if (AsksForRobustStart(fit->spec_.terms)) {
     std::optional<Eigen::VectorXd> robust;
-    if (!StartRobustly(*problem, fit->setting_, &fit->spec_.terms, &robust, error)) return nullptr;
+    if (!StartRobustly(*problem, constraints, fit->setting_, &fit->spec_.terms, &robust, error)) {
+      return nullptr;
+    }
     const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;
     if (robust.has_value() && !is_asked_for) problem->SetStart(*robust);
   }

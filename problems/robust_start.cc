@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "cost_functions/foot_feet.h"
 #include "cost_functions/term.h"
 #include "problems/curve_view.h"
 #include "splines/nearest_solution.h"
@@ -49,6 +50,7 @@ NameSpec WithoutLoss(NameSpec spec) {
 /// One term, its loss replaced by Huber's.
 struct HuberTerm {
   std::unique_ptr<BlockFamily> family;  // without loss
+  int coordinates = 0;                  // in which residuals are errors
   std::string loss;                     // empty: none
   bool estimated = false;               // the scale
   double scale = 0.0;                   // of Huber's loss, in the units of residuals
@@ -72,6 +74,17 @@ class HuberFit {
     HuberTerm made;
     if (!TermRegistry::Global().Resolve(spec, &term, &options, error)) return false;
     if (options.Word("loss") != "none") made.loss = options.Word("loss");
+    made.coordinates = setting_.dimension;
+    const TermInfo info = term->Info();
+    if (info.free_parameters || info.foot_points) {
+      // At the feet so far it is this.
+      NameSpec at_feet = spec;
+      at_feet.name = "interpolation";
+      if (!AddTerm(at_feet, error)) return false;
+      // In one dimension every point lies on the curve, and the residuals are zero.
+      terms_.back().coordinates = std::max(setting_.dimension - 1, 1);
+      return true;
+    }
     made.estimated = OptionText(spec, kScaleOption) == kEstimated;
     made.scale =
         options.Real(kScaleOption) * setting_.size * kHuberConstant / TuningConstant(made.loss);
@@ -82,18 +95,17 @@ class HuberFit {
     return true;
   }
 
-  /// All variables; false where there is no finite answer.
-  bool Solve(Eigen::VectorXd* x) {
+  /// Control points; false where there is no finite answer. `from_nothing`: *x is no fit.
+  bool Solve(bool from_nothing, Eigen::VectorXd* x) {
     // Weights settle to some digits within 20 steps; nothing here needs more of them.
     constexpr int kMaxSteps = 30;
     constexpr double kSettled = 1e-6;
+    if (!from_nothing) EstimateScales(*x);
     for (int step = 0; step < kMaxSteps; ++step) {
       const Eigen::VectorXd before = *x;
-      if (!SolveOnce(step == 0, x)) return false;
+      if (!SolveOnce(from_nothing && step == 0, x)) return false;
       if (step > 0 && (*x - before).cwiseAbs().maxCoeff() <= kSettled * setting_.size) break;
-      for (HuberTerm& term : terms_) {
-        if (term.estimated) term.scale = kHuberConstant * Sigma(term, *x);
-      }
+      EstimateScales(*x);
     }
     return true;
   }
@@ -101,10 +113,15 @@ class HuberFit {
   const std::vector<HuberTerm>& terms() const { return terms_; }
   /// Estimated standard deviation of the plain residuals in each coordinate.
   double Sigma(const HuberTerm& term, const Eigen::VectorXd& x) const {
-    return Median(PlainNorms(term, x)) / MedianOfNorm(setting_.dimension);
+    return Median(PlainNorms(term, x)) / MedianOfNorm(term.coordinates);
   }
 
  private:
+  void EstimateScales(const Eigen::VectorXd& x) {
+    for (HuberTerm& term : terms_) {
+      if (term.estimated) term.scale = kHuberConstant * Sigma(term, x);
+    }
+  }
   std::vector<double> PlainNorms(const HuberTerm& term, const Eigen::VectorXd& x) const {
     std::vector<double> norms = ResidualNorms(*term.family->rows(), x.data());
     for (double& norm : norms) norm /= std::sqrt(term.family->weight());
@@ -162,6 +179,83 @@ bool Freeze(const HuberFit& fit, const Eigen::VectorXd& x, const FitSetting& set
   return true;
 }
 
+/// The data at parameters that move to the feet on a curve.
+class MovingSites {
+ public:
+  explicit MovingSites(const FitSetting& asked)
+      : asked_(asked),
+        sites_(*asked.data),
+        parameters_(Eigen::Map<const Eigen::VectorXd>(sites_.parameters, sites_.size)) {
+    setting_ = asked;
+    setting_.data = &sites_;
+    setting_.parameter_offset = -1;
+    setting_.keep_order = setting_.ends_held = false;
+  }
+  MovingSites(const MovingSites&) = delete;
+  MovingSites& operator=(const MovingSites&) = delete;
+
+  const FitSetting& setting() const { return setting_; }  ///< With the parameters fixed.
+
+  /// Those that are held stay.
+  void MoveToFeet(const Eigen::VectorXd& control_points) {
+    const int m = sites_.size, d = setting_.dimension;
+    Points points = Eigen::Map<const Points>(sites_.points, m, d);
+    for (int c = 0; c < d; ++c) {
+      points.col(c) = (points.col(c).array() - setting_.center[c]) * setting_.scale;
+    }
+    Eigen::VectorXd all(control_points.size() + m);
+    all << control_points, parameters_;
+    FindFeet(*setting_.basis, d, setting_.control_point_offset, points, &all);
+    for (int i = 0; i < m; ++i) {
+      if (asked_.ends_held && (i == 0 || i == m - 1)) continue;
+      parameters_[i] = setting_.basis->Wrap(all[control_points.size() + i]);
+    }
+    sites_.parameters = parameters_.data();
+    sites_.order.clear();
+    sites_.groups.clear();
+    GroupBySpan(*setting_.basis, false, &sites_);
+  }
+
+  /// All variables of the problem.
+  Eigen::VectorXd WithParameters(const Eigen::VectorXd& control_points) const {
+    if (asked_.parameter_offset < 0) return control_points;
+    Eigen::VectorXd all(control_points.size() + parameters_.size());
+    all << control_points, parameters_;
+    return all;
+  }
+
+ private:
+  const FitSetting& asked_;
+  FitSetting setting_;
+  Sites sites_;
+  Eigen::VectorXd parameters_;
+};
+
+/// The problem's control points alone, under what constrains them.
+std::unique_ptr<Problem> OnControlPoints(const Problem& problem,
+                                         const std::vector<LinearConstraint>& constraints,
+                                         const FitSetting& setting, std::string* error) {
+  const auto size =
+      static_cast<Eigen::Index>(setting.basis->num_control_points()) * setting.dimension;
+  auto made = std::make_unique<Problem>(problem.name());
+  made->AddVariables("control_points", problem.start().head(size));
+  std::vector<LinearConstraint> kept;
+  for (const LinearConstraint& constraint : constraints) {
+    const bool is_on_points =
+        std::all_of(constraint.coefficients.begin(), constraint.coefficients.end(),
+                    [size](const auto& entry) { return entry.first < size; });
+    if (is_on_points) kept.push_back(constraint);
+  }
+  return made->SetLinearConstraints(kept, error) ? std::move(made) : nullptr;
+}
+
+bool HaveParametersOfTheirOwn(const std::vector<NameSpec>& terms) {
+  return std::any_of(terms.begin(), terms.end(), [](const NameSpec& spec) {
+    const Term* term = TermRegistry::Global().Find(spec.name);
+    return term != nullptr && (term->Info().free_parameters || term->Info().foot_points);
+  });
+}
+
 }  // namespace
 
 bool AsksForRobustStart(const std::vector<NameSpec>& terms) {
@@ -170,27 +264,48 @@ bool AsksForRobustStart(const std::vector<NameSpec>& terms) {
   });
 }
 
-bool StartRobustly(const Problem& problem, const FitSetting& setting, std::vector<NameSpec>* terms,
+bool StartRobustly(const Problem& problem, const std::vector<LinearConstraint>& constraints,
+                   const FitSetting& setting, std::vector<NameSpec>* terms,
                    std::optional<Eigen::VectorXd>* start, std::string* error) {
   const auto is_estimated = [](const NameSpec& spec) {
     return OptionText(spec, kScaleOption) == kEstimated;
   };
   const auto estimated = std::find_if(terms->begin(), terms->end(), is_estimated);
-  HuberFit fit(problem, setting);
-  Eigen::VectorXd x = problem.start();
-  std::string why;
-  bool solved = setting.parameter_offset < 0;
-  for (const NameSpec& spec : *terms) solved = solved && fit.AddTerm(spec, &why);
-  solved = solved && fit.Solve(&x);
-  if (!solved) {
-    start->reset();
-    if (estimated == terms->end()) return true;
-    *error = "term " + estimated->ToString() +
-             ": mad needs fixed parameters and terms that are compiled rows; give a number instead";
-    return false;
+  MovingSites sites(setting);
+  const std::unique_ptr<Problem> fixed = OnControlPoints(problem, constraints, setting, error);
+  if (fixed == nullptr) return false;
+  Eigen::VectorXd x = fixed->start();
+  const bool moves = HaveParametersOfTheirOwn(*terms);
+  // A curve nears its points' feet to the digits that a scale needs within some rounds.
+  constexpr int kMostRounds = 20;
+  constexpr double kSettled = 1e-3;
+  bool settled = false;
+  for (int round = 0;; ++round) {
+    HuberFit fit(*fixed, sites.setting());
+    std::string why;
+    const bool made = std::all_of(terms->begin(), terms->end(),
+                                  [&](const NameSpec& spec) { return fit.AddTerm(spec, &why); });
+    const bool is_last = made && moves && (settled || round == kMostRounds);
+    if (is_last) {
+      *start = sites.WithParameters(x);
+      return Freeze(fit, x, setting, terms, error);
+    }
+    const Eigen::VectorXd before = x;
+    if (!made || !fit.Solve(round == 0, &x)) {
+      start->reset();
+      if (estimated == terms->end()) return true;
+      *error = "term " + estimated->ToString() +
+               ": mad needs terms that are compiled rows, and points that determine the curve; "
+               "give a number instead";
+      return false;
+    }
+    if (!moves) {
+      *start = x;
+      return Freeze(fit, x, setting, terms, error);
+    }
+    settled = round > 0 && (x - before).cwiseAbs().maxCoeff() <= kSettled * setting.size;
+    sites.MoveToFeet(x);
   }
-  *start = x;
-  return Freeze(fit, x, setting, terms, error);
 }
 
 }  // namespace batten
