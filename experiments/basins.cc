@@ -40,7 +40,32 @@ double EnergyAt(const Problem& problem, const Eigen::VectorXd& x) {
   return sum * problem.units().energy;
 }
 
+/// Whether rho(r^2) bends upwards everywhere: rho' + 2 s rho'' >= 0 at s = r^2.
+bool IsConvex(const ceres::LossFunction& loss) {
+  constexpr int kFarthest = 60;  // squared residuals of 2^-60 to 2^60 of the data's size
+  for (int k = -kFarthest; k <= kFarthest; ++k) {
+    const double s = std::ldexp(1.0, k);
+    double rho[3];
+    loss.Evaluate(s, rho);
+    constexpr double kRounding = 1e-12;
+    if (rho[1] + 2.0 * s * rho[2] < -kRounding * std::abs(rho[1])) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+bool MayHaveSeveralMinima(const Problem& problem) {
+  const CurveFit* fit = problem.curve_fit();
+  if (fit == nullptr) return false;
+  if (fit->spec().parameter_kind != ParameterKind::kFixed) return true;
+  for (const Problem::TermInstance& term : problem.terms()) {
+    if (term.family->rows() != nullptr) continue;
+    if (term.family->rows_without_loss() == nullptr) return true;
+    if (!IsConvex(*term.family->loss())) return true;
+  }
+  return false;
+}
 
 double EnergyAtFootPoints(const CurveFit& fit, const Points& control_points) {
   const BsplineCurve curve(fit.basis(), control_points);
@@ -77,7 +102,13 @@ double CurveDistanceBetween(const BsplineCurve& a, const BsplineCurve& b) {
 }
 
 std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>& ends) {
-  return FindBasins(problem.curve_fit()->basis(), problem.curve_fit()->size(), ends);
+  const CurveFit& fit = *problem.curve_fit();
+  if (fit.spec().parameter_kind != ParameterKind::kFixed) {
+    return FindBasins(fit.basis(), fit.size(), ends);
+  }
+  std::vector<BasinEnd> by_energy = ends;
+  for (BasinEnd& end : by_energy) end.energy_at_foot_points = end.energy;
+  return FindBasins(fit.basis(), fit.size(), by_energy);
 }
 
 std::vector<int> FindBasins(const BsplineBasis& basis, double size,

@@ -8,7 +8,11 @@
 
 namespace batten {
 
-/// Where a run on a problem with free parameters leads, polished.
+/// Whether E of a curve fit may have several minima: parameters that move, terms that are not
+/// affine (curve_fairing), losses that are not convex (cauchy, tukey).
+bool MayHaveSeveralMinima(const Problem& problem);
+
+/// Where a run on a problem with several minima leads, polished.
 struct BasinEnd {
   Points control_points;               ///< User units.
   double energy = 0.0;                 ///< At its parameters.
@@ -28,8 +32,9 @@ double EnergyAtFootPoints(const CurveFit& fit, const Points& control_points);
 /// Largest distance of a sampled point of either curve from the other one, 16 samples a span.
 double CurveDistanceBetween(const BsplineCurve& a, const BsplineCurve& b);
 
-/// Basin of each end, 0, 1, ... in the order of their energies at foot points: ends whose curves
-/// are nearer to each other than kSameCurve of the data's size share one.
+/// Basin of each end, 0, 1, ... in the order of their energies at foot points, with fixed
+/// parameters of their energies: ends whose curves are nearer to each other than kSameCurve of the
+/// data's size share one.
 std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>& ends);
 /// The same where the problem is not at hand: `size` is that of its data.
 std::vector<int> FindBasins(const BsplineBasis& basis, double size,

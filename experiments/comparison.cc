@@ -188,8 +188,7 @@ void ProblemComparison::FindRowBasins() {
 }
 
 void ProblemComparison::AddTo(ComparisonResult* result) {
-  const CurveFit* const fit = problem_.curve_fit();
-  if (fit != nullptr && fit->spec().parameter_kind != ParameterKind::kFixed) FindRowBasins();
+  if (MayHaveSeveralMinima(problem_)) FindRowBasins();
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     if (rows_[k].solver.empty()) continue;  // interrupted before its first run
     Measure(k);

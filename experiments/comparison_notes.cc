@@ -83,12 +83,15 @@ std::string Basins(const ComparisonResult& result, int problem) {
   std::map<int, std::string> solvers;
   std::map<int, double> energies;
   std::string name;
+  const char* which = "E at feet";
   for (const ComparisonRow& row : result.rows) {
     if (row.problem_index != problem || !row.basin.has_value()) continue;
     name = row.problem;
     std::string& text = solvers[*row.basin];
     text += (text.empty() ? "" : " ") + row.solver;
-    const double energy = row.report.energy_at_foot_points;
+    const bool moves = row.parameter_kind != ParameterKind::kFixed;
+    if (!moves) which = "E";
+    const double energy = moves ? row.report.energy_at_foot_points : row.run.energy;
     const auto [place, is_new] = energies.emplace(*row.basin, energy);
     if (!is_new) place->second = std::min(place->second, energy);
   }
@@ -96,8 +99,8 @@ std::string Basins(const ComparisonResult& result, int problem) {
   std::string text = name + ": " + std::to_string(solvers.size()) +
                      " minima; times compare within one basin only:";
   for (const auto& [basin, names] : solvers) {
-    text += (basin == solvers.begin()->first ? " " : "; ") + std::to_string(basin) +
-            " (E at feet " + ShortNumber(energies[basin], 7) + "): " + names;
+    text += (basin == solvers.begin()->first ? " " : "; ") + std::to_string(basin) + " (" + which +
+            " " + ShortNumber(energies[basin], 7) + "): " + names;
   }
   return text;
 }

@@ -127,10 +127,10 @@ std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double dist
 
 bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
                    StartComparison* comparison, std::string* error) {
-  const CurveFit* fit = problem.curve_fit();
-  if (fit == nullptr || fit->spec().parameter_kind == ParameterKind::kFixed) {
-    *error =
-        problem.name() + ": starts are compared where parameters are free; here they are fixed";
+  if (!MayHaveSeveralMinima(problem)) {
+    *error = problem.name() +
+             ": starts are compared where E may have several minima, as with free "
+             "parameters or the loss tukey; here it has one";
     return false;
   }
   std::vector<OneRun> runs;

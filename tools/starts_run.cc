@@ -94,7 +94,8 @@ int RunStartComparisons(const std::vector<std::shared_ptr<const Problem>>& probl
   output->results +=
       "From " + std::to_string(spec.starts) +
       " disturbed circles. Ends are polished by newton where it takes the problem; ends that are "
-      "one curve, to 1e-6 of the size, share a basin, numbered by energy at foot points. "
+      "one curve, to 1e-6 of the size, share a basin, numbered by energy at foot points, with "
+      "fixed parameters by energy. "
       "best_found: runs that end in basin "
       "1.\n";
   if (!write("starts_solvers.csv", solvers) || !write("starts_runs.csv", runs)) return kBadInput;

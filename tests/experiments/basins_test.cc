@@ -87,6 +87,55 @@ TEST(Basins, OfSeveralMethodsNearOneMinimumAreOne) {
   EXPECT_EQ(FindBasins(*problem, ends), std::vector<int>(ends.size(), 0));
 }
 
+/// A segment of lines whose first end is compared with six points at (0, 0) and four at (0, 1), its
+/// second with ten at (1, 0).
+std::unique_ptr<Problem> TwoHeaps(const std::string& terms) {
+  DataSet data;
+  data.name = "heaps";
+  data.points.resize(20, 2);
+  data.parameters = Eigen::VectorXd(20);
+  for (int i = 0; i < 20; ++i) {
+    data.points.row(i) << (i < 10 ? 0.0 : 1.0), (i >= 6 && i < 10 ? 1.0 : 0.0);
+    (*data.parameters)[i] = i < 10 ? 0.0 : 1.0;
+  }
+  FitSpec spec;
+  spec.degree = 1;
+  spec.control_points = 2;
+  spec.parameters.reset();
+  std::string error;
+  EXPECT_TRUE(ParseNameSpecList(terms, &spec.terms, &error)) << error;
+  auto problem = MakeFitProblem(data, spec, &error);
+  EXPECT_NE(problem, nullptr) << error;
+  return problem;
+}
+
+// By hand: with Tukey's loss of scale b the points of the other heap, farther away than b, count
+// b^2 / 3 each, and those of the own heap nothing.
+TEST(Basins, OfALossThatIsNotConvexAreItsMinimaAtFixedParameters) {
+  const auto problem = TwoHeaps("interpolation/loss=tukey/loss_scale=0.2");
+  ASSERT_TRUE(MayHaveSeveralMinima(*problem));
+  std::vector<BasinEnd> ends;
+  for (const double y : {0.98, 0.03, -0.04, 1.05}) {
+    Points start(2, 2);
+    start << 0.02, y, 0.99, 0.01;
+    ends.push_back(Polish(*problem, problem->curve_fit()->Variables(start)));
+    EXPECT_TRUE(ends.back().polished);
+    const double expected = (y > 0.5 ? 6 : 4) * 0.2 * 0.2 / 3.0;
+    EXPECT_NEAR(ends.back().energy, expected, 1e-14);
+  }
+  EXPECT_EQ(FindBasins(*problem, ends), (std::vector<int>{1, 0, 0, 1}));
+}
+
+TEST(Basins, AreLookedForWhereEMayHaveSeveral) {
+  for (const char* one : {"interpolation", "interpolation/loss=huber/loss_scale=0.1",
+                          "interpolation/loss=soft_l1/loss_scale=0.1,fairing/derivative=1"}) {
+    EXPECT_FALSE(MayHaveSeveralMinima(*TwoHeaps(one))) << one;
+  }
+  EXPECT_TRUE(MayHaveSeveralMinima(*TwoHeaps("interpolation/loss=cauchy/loss_scale=0.1")));
+  EXPECT_TRUE(MayHaveSeveralMinima(*LoadCatalogueProblem("rhino_free")));
+  EXPECT_FALSE(MayHaveSeveralMinima(*LoadCatalogueProblem("rhino")));
+}
+
 TEST(StartComparison, StartsDependOnSeedAndNumberAlone) {
   const auto problem = LoadCatalogueProblem("cat_free");
   std::string error;

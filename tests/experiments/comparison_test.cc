@@ -46,7 +46,8 @@ ComparisonResult Compared(const ComparisonSpec& spec) {
 }
 
 /// A problem file with its data beside it.
-std::string ProblemFile(const std::string& name, int num_points, int control_points) {
+std::string ProblemFile(const std::string& name, int num_points, int control_points,
+                        const std::string& term = "interpolation") {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "batten_compare";
   std::filesystem::create_directories(folder);
   std::ofstream data(folder / (name + ".csv"));
@@ -56,7 +57,7 @@ std::string ProblemFile(const std::string& name, int num_points, int control_poi
   std::ofstream(folder / (name + ".json"))
       << "{\"name\": \"" << name << "\", \"data\": \"" << name << ".csv\", \"spline\": "
       << "{\"degree\": 3, \"closed\": true, \"control_points\": " << control_points
-      << ", \"knots\": \"uniform\"}, \"parameters\": \"uniform\", \"terms\": [\"interpolation\"], "
+      << ", \"knots\": \"uniform\"}, \"parameters\": \"uniform\", \"terms\": [\"" << term << "\"], "
       << "\"start\": \"data\"}";
   return folder / (name + ".json");
 }
@@ -270,6 +271,15 @@ TEST(Compare, TellsWhichMinimumARunLeadsTo) {
     EXPECT_EQ(result.rows[a].basin == 1, is_best) << result.rows[a].solver;
   }
   EXPECT_THAT(ComparisonText(result), HasSubstr("minima; times compare within one basin only"));
+}
+
+TEST(Compare, TellsTheMinimumOfALossThatIsNotConvex) {
+  const std::string tukey = ProblemFile("tukey", 60, 9, "interpolation/loss=tukey/loss_scale=0.3");
+  const ComparisonResult robust = Compared(Spec(tukey, "lbfgs,newton"));
+  for (const ComparisonRow& row : robust.rows) EXPECT_TRUE(row.basin.has_value()) << row.solver;
+  const std::string huber = ProblemFile("huber", 60, 9, "interpolation/loss=huber/loss_scale=0.3");
+  const ComparisonResult convex = Compared(Spec(huber, "lbfgs,newton"));
+  for (const ComparisonRow& row : convex.rows) EXPECT_FALSE(row.basin.has_value()) << row.solver;
 }
 
 TEST(Compare, ShowsNoColumnInWhichNoRowHasANumber) {

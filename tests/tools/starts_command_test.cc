@@ -86,7 +86,7 @@ TEST(CompareStarts, GivesTheSameNumbersTwiceButForTimes) {
 TEST(CompareStarts, RefusesFixedParametersAndNoStarts) {
   const Ended fixed = RunBatten({"compare", "--problems=rhino", "--solvers=cg", "--starts=2"});
   EXPECT_EQ(fixed.status, 2);
-  EXPECT_THAT(fixed.err, HasSubstr("rhino: starts are compared where parameters are free"));
+  EXPECT_THAT(fixed.err, HasSubstr("rhino: starts are compared where E may have several minima"));
   const Ended none =
       RunBatten({"compare", "--problems=rhino_free", "--solvers=newton", "--starts=0"});
   EXPECT_EQ(none.status, 2);
