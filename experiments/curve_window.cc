@@ -22,8 +22,10 @@ CurveWindow::CurveWindow(TrackedCurve* curve, double bound, int first_knot, int 
     low_ = curve->Knot(first);
     high_ = holds_all_ ? low_ + curve->period() : curve->Knot(last + p + 1);
   } else {
-    first = std::max(first, 0);
-    last = std::min(last, n - 1);
+    // A window with the first or last knot that moves has the end of the curve in it: its control
+    // point stands under no such knot.
+    first = first_knot <= curve->first_free_knot() ? 0 : first;
+    last = last_knot >= curve->last_free_knot() ? n - 1 : last;
     first_knot = std::max(first_knot, curve->first_free_knot());
     last_knot = std::min(last_knot, curve->last_free_knot());
     low_ = curve->Knot(std::max(first, p));

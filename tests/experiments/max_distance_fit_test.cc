@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "experiments/audit_curve.h"
+#include "experiments/curve_window.h"
 
 namespace batten {
 namespace {
@@ -219,10 +220,47 @@ INSTANTIATE_TEST_SUITE_P(Cubic, MaxDistanceOfKnownSpline,
 TEST(MaxDistance, NeedsNoMoreControlPointsThanTheOpenSplineAtAModestBound) {
   // At smaller bounds the knots of this open curve settle in a local minimum
   // (docs/max_distance.md).
-  const BsplineCurve truth = KnownCurve(false, 2);
-  const DataSet data = SamplesOf(truth, 400);
-  const MaxDistanceFit fit = Search(data, false, 3, 1e-4 * SizeOf(data.points));
-  EXPECT_LE(CountOf(fit), truth.basis().num_control_points());
+  for (const int dimension : {2, 3}) {
+    const BsplineCurve truth = KnownCurve(false, dimension);
+    const DataSet data = SamplesOf(truth, 400);
+    const MaxDistanceFit fit = Search(data, false, 3, 1e-4 * SizeOf(data.points));
+    EXPECT_LE(CountOf(fit), truth.basis().num_control_points()) << dimension;
+  }
+}
+
+// The data of a cubic without inner knots, and one whose ends are off: there is nothing to move but
+// them.
+TEST(CurveWindow, OfAWholeOpenCurveMovesItsEnds) {
+  const std::vector<double> knots = {0, 0, 0, 0, 0.3, 1, 1, 1, 1};
+  const auto basis = BsplineBasis::Make(3, false, knots, nullptr);
+  Points control_points(5, 2);
+  control_points << 0, 0, 0.2, 0.5, 0.5, 0.1, 0.8, 0.6, 1, 0.2;
+  const DataSet data = SamplesOf(BsplineCurve(*basis, control_points), 50);
+  Eigen::VectorXd parameters = Eigen::VectorXd::LinSpaced(50, 0.0, 1.0);
+  Points off = control_points;
+  off.row(0) += Eigen::RowVector2d(-0.01, 0.02);
+  off.row(4) += Eigen::RowVector2d(0.02, 0.01);
+  TrackedCurve curve(BsplineCurve(*basis, off), data.points, parameters);
+  curve.FollowAll(0);
+  const double bound = 1e-9;
+  CurveWindow all(&curve, bound, curve.first_free_knot(), curve.last_free_knot());
+  EXPECT_TRUE(all.Lower(2, 40, 1.0));
+  EXPECT_LE(curve.squared_distances().maxCoeff(), bound * bound);
+  // The ends are held to those of the data.
+  for (const int end : {0, 4}) {
+    for (int c = 0; c < 2; ++c)
+      EXPECT_NEAR(curve.ControlPoint(end)[c], control_points(end, c), bound);
+  }
+}
+
+TEST(MaxDistance, FindsTheCornersOfAnOpenPolyline) {
+  DataSet corners;
+  corners.points.resize(5, 2);
+  corners.points << 0, 0, 4, 0.5, 5, 3, 2, 2, 0.5, 3.5;
+  const DataSet data = Resampled(corners, false, 400);
+  for (const double bound : {1e-2, 1e-3, 1e-4}) {
+    EXPECT_LE(CountOf(Search(data, false, 1, bound * 5.0)), 5) << bound;
+  }
 }
 
 TEST(MaxDistance, FindsTheCornersOfAPolygon) {
