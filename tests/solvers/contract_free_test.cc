@@ -163,8 +163,6 @@ double LargestMiss(const std::vector<LinearConstraint>& constraints, const Eigen
 }
 
 TEST_P(EverySolver, HoldsConstraintsOnTheControlPointsOfFreeFits) {
-  // Ceres' trust region has tests of its own for what is left once a point leaves its spans.
-  if (keeps_its_spans()) return;
   for (const ContractProblem& row : MovingProblems()) {
     const auto problem = row.make();
     const bool takes_it_without = WhyUnsupported(*problem, free_name()).empty();
@@ -195,14 +193,18 @@ TEST_P(EverySolver, HoldsConstraintsOnTheControlPointsOfFreeFits) {
 }
 
 TEST_P(EverySolver, FindsTheMinimumOfLbfgsWhereConstraintsBindFreeFits) {
-  if (!ReachesTheMinimum(GetParam())) return;
+  if (!ReachesTheMinimum(GetParam()) && GetParam() != "ceres_lm") return;
   for (const ContractProblem& row : MovingProblems()) {
     const auto problem = row.make();
     AddConstraints(OnControlPoints(*problem), problem.get());
     if (!WhyUnsupported(*problem, free_name()).empty()) continue;
     SCOPED_TRACE(row.name);
     SolverTrial trial(*problem, free_name(), {3000});
-    ASSERT_TRUE(IsSuccess(trial.outcome.reason)) << ToString(trial.outcome.reason);
+    // Ceres ends by itself where a step no longer changes E measurably (docs/solvers/ceres_lm.md).
+    const bool is_end_of_ceres =
+        GetParam() == "ceres_lm" && trial.outcome.reason == StopReason::kNativeStop;
+    ASSERT_TRUE(IsSuccess(trial.outcome.reason) || is_end_of_ceres)
+        << ToString(trial.outcome.reason);
     // From its end, moved along the constraints by up to 1e-3: the same basin.
     Objective objective(problem.get(), nullptr);
     Eigen::VectorXd x = trial.x;
