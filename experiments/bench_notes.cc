@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "cost_functions/options.h"
 #include "experiments/bench_targets.h"
@@ -16,6 +15,12 @@ std::string PlaceOf(const BenchResults& results, const BenchRun& run) {
   return results.instances[run.instance].label + ": " + results.solvers[run.solver];
 }
 
+bool ProcessFailed(const nlohmann::json& row) {
+  const std::string stop = TextAt(row, "stop");
+  return stop == "crashed" || stop == "out_of_memory" || stop == "wall_limit" ||
+         stop == "cpu_limit";
+}
+
 /// What one row has to say against its solver; empty: nothing.
 std::string Complaint(const nlohmann::json& row) {
   const std::vector<std::string> flags = TextsAt(row, "findings");
@@ -23,11 +28,7 @@ std::string Complaint(const nlohmann::json& row) {
     return std::find(flags.begin(), flags.end(), flag) != flags.end();
   };
   const std::string stop = TextAt(row, "stop");
-  for (const char* end : {"crashed", "out_of_memory", "wall_limit", "cpu_limit"}) {
-    if (stop != end) continue;
-    const std::string log = TextAt(row, "log");
-    return stop + ": " + TextAt(row, "message") + (log.empty() ? "" : " (" + log + ")");
-  }
+  if (ProcessFailed(row)) return stop + ": " + TextAt(row, "message");
   if (!TextAt(row, "disagreement").empty()) return TextAt(row, "disagreement");
   if (!TextAt(row, "failure").empty()) return "claim fails: " + TextAt(row, "failure");
   if (Has("claim_fails")) {
@@ -42,14 +43,33 @@ std::string Complaint(const nlohmann::json& row) {
   return "";
 }
 
+/// Each once, with the log of its first repetition, and in how many of several it was so.
+void NoteComplaints(const BenchRun& run, BenchResults* results) {
+  std::vector<std::string> order;
+  std::map<std::string, std::pair<std::size_t, std::string>> said;  // times, log
+  for (const nlohmann::json* row : run.rows) {
+    const std::string complaint = Complaint(*row);
+    if (complaint.empty()) continue;
+    auto& [times, log] = said[complaint];
+    if (times++ > 0) continue;
+    order.push_back(complaint);
+    if (ProcessFailed(*row)) log = TextAt(*row, "log");
+  }
+  for (const std::string& complaint : order) {
+    const auto& [times, log] = said[complaint];
+    std::string note = PlaceOf(*results, run) + ": " + complaint;
+    if (times < run.rows.size()) {
+      note += ", in " + std::to_string(times) + " of " + std::to_string(run.rows.size()) +
+              " repetitions";
+    }
+    results->notes.push_back(note + (log.empty() ? "" : " (" + log + ")"));
+  }
+}
+
 void NoteRuns(BenchResults* results) {
   for (const BenchRun& run : results->runs) {
-    std::set<std::string> said;
+    NoteComplaints(run, results);
     for (const nlohmann::json* row : run.rows) {
-      const std::string complaint = Complaint(*row);
-      if (!complaint.empty() && said.insert(complaint).second) {
-        results->notes.push_back(PlaceOf(*results, run) + ": " + complaint);
-      }
       const std::vector<std::string> flags = TextsAt(*row, "findings");
       const bool belied = std::count(flags.begin(), flags.end(), "claim_fails") > 0;
       if (belied || !TextAt(*row, "disagreement").empty()) results->some_claim_failed = true;

@@ -31,6 +31,11 @@ Steps StepsOf(std::vector<double> values, std::size_t count) {
   return steps;
 }
 
+std::size_t CountRun(const std::vector<double>& costs) {
+  return static_cast<std::size_t>(
+      std::count_if(costs.begin(), costs.end(), [](double cost) { return !std::isnan(cost); }));
+}
+
 std::size_t NumSolvers(const CostTable& costs) { return costs.empty() ? 0 : costs[0].size(); }
 
 }  // namespace
@@ -45,10 +50,13 @@ std::vector<Steps> PerformanceProfiles(const CostTable& costs) {
   for (std::size_t s = 0; s < NumSolvers(costs); ++s) {
     std::vector<double> ratios;
     for (const std::vector<double>& problem : costs) {
-      const double best = *std::min_element(problem.begin(), problem.end());
-      if (std::isfinite(best)) ratios.push_back(problem[s] / best);
+      double best = kInfinity;
+      for (const double cost : problem) best = std::min(best, cost);  // passes over NaN
+      // Infinity, too, where nobody solves it: the ratio would be none.
+      ratios.push_back(std::isinf(problem[s]) ? kInfinity : problem[s] / best);
     }
-    profiles.push_back(StepsOf(std::move(ratios), costs.size()));
+    const std::size_t count = CountRun(ratios);
+    profiles.push_back(StepsOf(std::move(ratios), count));
   }
   return profiles;
 }
@@ -66,13 +74,14 @@ std::vector<Steps> DataProfiles(const CostTable& costs, const std::vector<double
   for (std::size_t s = 0; s < NumSolvers(costs); ++s) {
     std::vector<double> relative;
     for (std::size_t p = 0; p < costs.size(); ++p) relative.push_back(costs[p][s] / units[p]);
-    profiles.push_back(StepsOf(std::move(relative), costs.size()));
+    const std::size_t count = CountRun(relative);
+    profiles.push_back(StepsOf(std::move(relative), count));
   }
   return profiles;
 }
 
 Steps Distribution(std::vector<double> costs) {
-  const std::size_t count = costs.size();
+  const std::size_t count = CountRun(costs);
   return StepsOf(std::move(costs), count);
 }
 
@@ -93,7 +102,7 @@ CostTable ChargeFailures(const CostTable& costs, double factor) {
     if (largest < 0.0) continue;
     charged.push_back(problem);
     for (double& cost : charged.back()) {
-      if (!std::isfinite(cost)) cost = factor * largest;
+      if (std::isinf(cost)) cost = factor * largest;
     }
   }
   return charged;

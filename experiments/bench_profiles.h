@@ -8,7 +8,8 @@
 
 namespace batten {
 
-// Statistics of benchmarks on plain tables. A cost is positive; infinity: the solver failed.
+// Statistics of benchmarks on plain tables. A cost is positive; infinity: the solver failed; NaN:
+// it was not run, and the problem counts for the others alone.
 
 /// costs[problem][solver].
 using CostTable = std::vector<std::vector<double>>;
@@ -42,7 +43,7 @@ Steps Distribution(std::vector<double> costs);
 double ShiftedGeometricMean(const std::vector<double>& values, double shift);
 
 /// Failures charged: infinite costs become `factor` times the largest finite cost of their problem.
-/// Problems that nobody solves are left out.
+/// Problems that nobody solves are left out. NaN stays.
 CostTable ChargeFailures(const CostTable& costs, double factor);
 
 /// The median and its 95 % interval by the bootstrap's percentiles (Efron & Tibshirani, An

@@ -112,10 +112,12 @@ class Collector {
     if (ran && std::isnan(results_.instances[instance].start_energy)) {
       results_.instances[instance].start_energy = NumberAt(row, "start_energy");
     }
+    const bool failed = !ran && TextAt(row, "stop") != "skipped";
+    run.num_failed += failed ? 1 : 0;
     if (FlagAt(row, "overlapped")) {
       results_.overlapped = true;
-    } else if (ran) {
-      run.seconds.push_back(NumberAt(row, "seconds"));
+    } else if (ran || failed) {
+      run.seconds.push_back(failed ? kInfinity : NumberAt(row, "seconds"));
     }
     for (const char* key : {"energy", "iterations", "energy_calls", "gradient_calls", "stream"}) {
       const bool known = row.contains(key) && run.first->contains(key);
@@ -182,8 +184,10 @@ class Collector {
     std::vector<ShortTrace> traces;
     std::vector<bool> is_timed;
     for (const nlohmann::json* row : run->rows) {
-      if (!(NumberAt(*row, "trace_rows") > 0.0)) continue;
-      traces.push_back(ReadShortTrace(data_.folder + "/traces/" + TextAt(*row, "key") + ".csv"));
+      const bool has_trace = NumberAt(*row, "trace_rows") > 0.0;
+      traces.push_back(
+          has_trace ? ReadShortTrace(data_.folder + "/traces/" + TextAt(*row, "key") + ".csv")
+                    : ShortTrace());
       is_timed.push_back(!FlagAt(*row, "overlapped"));
     }
     const auto& basins = instance.basin_energies;
@@ -234,16 +238,14 @@ CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cos
       results.instances.size(), std::vector<std::vector<double>>(num_solvers));
   for (const BenchRun& run : results.runs) {
     const double value = run.to_target[target][static_cast<std::size_t>(cost)];
-    seeds[run.instance][run.solver].push_back(std::isnan(value) ? kInfinity : value);
+    if (!std::isnan(value)) seeds[run.instance][run.solver].push_back(value);
   }
   CostTable costs;
   if (rows_of != nullptr) rows_of->clear();
   for (std::size_t i = 0; i < results.instances.size(); ++i) {
     if (!HasTarget(results.instances[i], results.targets[target])) continue;
     costs.emplace_back();
-    for (const std::vector<double>& values : seeds[i]) {
-      costs.back().push_back(values.empty() ? kInfinity : Median(values));
-    }
+    for (const std::vector<double>& values : seeds[i]) costs.back().push_back(Median(values));
     if (rows_of != nullptr) rows_of->push_back(i);
   }
   return costs;
@@ -276,11 +278,11 @@ CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost c
       continue;
     }
     if (!HasTarget(results.instances[key.first], results.targets[target])) continue;
-    costs.emplace_back();
-    for (const BenchRun* run : pair) {
-      const double value = run->to_own_target[target][static_cast<std::size_t>(cost)];
-      costs.back().push_back(std::isnan(value) ? kInfinity : value);
-    }
+    const auto CostOf = [&](const BenchRun* run) {
+      return run->to_own_target[target][static_cast<std::size_t>(cost)];
+    };
+    if (std::isnan(CostOf(pair[0])) || std::isnan(CostOf(pair[1]))) continue;
+    costs.push_back({CostOf(pair[0]), CostOf(pair[1])});
   }
   return costs;
 }

@@ -42,13 +42,16 @@ struct BenchRun {
   std::size_t instance = 0;
   std::size_t solver = 0;
   int solver_seed = 1;
-  const nlohmann::json* first = nullptr;         // the row of the first repetition that is there
-  std::vector<const nlohmann::json*> rows;       // of all repetitions
-  std::vector<double> seconds;                   // of those that did not overlap others
-  int basin = 0;                                 // 0: the best; -1: not known, or no end
-  bool ran = false;                              // it gave a result
-  bool repetitions_differ = false;               // their ends or counts
-  std::vector<std::array<double, 3>> to_target;  // by target and cost; infinity: not reached
+  const nlohmann::json* first = nullptr;    // the row of the first repetition that is there
+  std::vector<const nlohmann::json*> rows;  // of all repetitions
+  int num_failed = 0;                       // repetitions whose process gave no result
+  /// Of those that did not overlap others; infinity: failed.
+  std::vector<double> seconds;
+  int basin = 0;                    // 0: the best; -1: not known, or no end
+  bool ran = false;                 // it gave a result
+  bool repetitions_differ = false;  // their ends or counts
+  /// By target and cost; infinity: not reached, NaN: times that are not known.
+  std::vector<std::array<double, 3>> to_target;
   /// The same to the minimum of the run's own basin.
   std::vector<std::array<double, 3>> to_own_target;
 };
@@ -73,13 +76,15 @@ struct BenchResults {
 BenchResults CollectResults(const BenchData& data);
 
 /// Costs of one target, a row per instance that has it, a column per solver (several seeds of a
-/// solver: their median); infinity where a solver does not reach it or was left out.
+/// solver: their median); infinity where a solver does not reach it or does not apply, NaN where it
+/// was not run (excluded, not finished) or its time is not known.
 /// `rows_of`, if not null, receives which instance each row is.
 CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cost,
                   std::vector<std::size_t>* rows_of);
 
 /// Costs of two solvers on instances to which both apply and on which they end in one basin: a fast
-/// way to another minimum is neither won nor lost, nor is an end of unknown basin.
+/// way to another minimum is neither won nor lost, nor is an end of unknown basin. Costs that are
+/// not known are left out.
 CostTable PairCosts(const BenchResults& results, std::size_t target, BenchCost cost,
                     std::size_t first, std::size_t second);
 

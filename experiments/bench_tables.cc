@@ -52,7 +52,7 @@ double Shift(BenchCost cost) { return cost == BenchCost::kSeconds ? 1e-3 : 10.0;
 double ChargedMean(const CostTable& costs, std::size_t solver, double shift) {
   std::vector<double> charged;
   for (const std::vector<double>& row : ChargeFailures(costs, kCharge)) {
-    charged.push_back(row[solver]);
+    if (!std::isnan(row[solver])) charged.push_back(row[solver]);
   }
   return ShiftedGeometricMean(charged, shift);
 }
@@ -61,6 +61,12 @@ int CountSolved(const CostTable& costs, std::size_t solver) {
   return static_cast<int>(std::count_if(
       costs.begin(), costs.end(),
       [solver](const std::vector<double>& row) { return std::isfinite(row[solver]); }));
+}
+
+int CountNotRun(const CostTable& costs, std::size_t solver) {
+  return static_cast<int>(
+      std::count_if(costs.begin(), costs.end(),
+                    [solver](const std::vector<double>& row) { return std::isnan(row[solver]); }));
 }
 
 /// What one solver did on the instances of one kind of parameters.
@@ -126,11 +132,11 @@ bool Write(const CsvTable& table, const std::string& stem, const std::string& ca
 }  // namespace
 
 CsvTable RunTable(const BenchResults& results) {
-  CsvTable table({"problem",      "terms",     "data_seed",     "start_seed", "solver",
-                  "seed",         "stop",      "verified",      "iterations", "evaluations",
-                  "energy",       "gap",       "gradient_norm", "basin",      "rms_orthogonal",
-                  "findings",     "message",   "repetitions",   "seconds",    "seconds_low",
-                  "seconds_high", "work_units"});
+  CsvTable table({"problem",     "terms",        "data_seed",     "start_seed", "solver",
+                  "seed",        "stop",         "verified",      "iterations", "evaluations",
+                  "energy",      "gap",          "gradient_norm", "basin",      "rms_orthogonal",
+                  "findings",    "message",      "repetitions",   "failed",     "seconds",
+                  "seconds_low", "seconds_high", "work_units"});
   for (const BenchRun& run : results.runs) {
     const nlohmann::json& row = *run.first;
     const BenchInstance& instance = results.instances[run.instance];
@@ -160,6 +166,7 @@ CsvTable RunTable(const BenchResults& results) {
                   FlagsText(row),
                   WithoutCommas(TextAt(row, "message")),
                   std::to_string(run.rows.size()),
+                  std::to_string(run.num_failed),
                   Cell(seconds.median),
                   Cell(seconds.low),
                   Cell(seconds.high),
@@ -169,8 +176,8 @@ CsvTable RunTable(const BenchResults& results) {
 }
 
 CsvTable SolverTable(const BenchResults& results) {
-  CsvTable table({"target", "kind", "solver", "instances", "solved", "best_basin", "of_basins",
-                  "evaluations", "work_units", "seconds"});
+  CsvTable table({"target", "kind", "solver", "instances", "not_run", "solved", "best_basin",
+                  "of_basins", "evaluations", "work_units", "seconds"});
   const std::vector<std::string> kinds = Kinds(results);
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
     std::vector<std::size_t> rows_of;
@@ -192,6 +199,7 @@ CsvTable SolverTable(const BenchResults& results) {
                                           kind,
                                           WithoutCommas(results.solvers[s]),
                                           std::to_string(costs[0].size()),
+                                          std::to_string(CountNotRun(costs[0], s)),
                                           std::to_string(CountSolved(costs[0], s)),
                                           basins ? std::to_string(counts.best_basin) : "",
                                           basins ? std::to_string(counts.of_basins) : ""};
@@ -243,15 +251,19 @@ CsvTable PairTable(const BenchResults& results) {
 
 bool WriteBenchTables(const BenchResults& results, const std::string& folder, FileBatch* batch,
                       std::string* error) {
-  std::string notes = "# " + MarkdownText(results.suite) + "\n\n" +
-                      std::to_string(results.num_finished) + " of " +
-                      std::to_string(results.num_cells) +
-                      " cells are finished. A solver that does not reach a target, or does not "
-                      "apply, is charged 10 times the largest cost of its instance in the means of "
-                      "solvers.md; instances on which nobody reaches it are left out of them. "
-                      "Evaluations are calls of E, g and J and products; a method that makes none, "
-                      "as a direct one, counts as one, and searches for feet are not among them. "
-                      "Solvers that apply to no instance of a kind have no row there.\n\n";
+  std::string notes =
+      "# " + MarkdownText(results.suite) + "\n\n" + std::to_string(results.num_finished) + " of " +
+      std::to_string(results.num_cells) +
+      " cells are finished. A solver that does not reach a target, or does not "
+      "apply, is charged 10 times the largest cost of its instance in the means of "
+      "solvers.md; instances on which nobody reaches it are left out of them. What "
+      "was excluded or is not finished is no failure: not_run counts such instances, "
+      "which are in no mean or share of that solver. Of repetitions the median "
+      "counts, and one that failed is infinity in it. "
+      "Evaluations are calls of E, g and J and products; a method that makes none, "
+      "as a direct one, counts as one, and searches for feet are not among them. "
+      "Solvers that apply to no instance of a kind, or ran on none, have no row "
+      "there.\n\n";
   for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
   return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&
          Write(SolverTable(results), folder + "/solvers", results.suite + ": by target and solver",

@@ -17,9 +17,9 @@ namespace batten {
 /// A row per instance, solver and seed: what came of it.
 CsvTable RunTable(const BenchResults& results);
 /// A row per target, kind of parameters and solver that applies to some instance of that kind:
-/// instances solved, how often the best basin was found, shifted
-/// geometric means of each cost (shift 10; of seconds 1 ms) with failures charged 10 times the
-/// largest cost of their instance.
+/// instances, those of them on which it was not run, those solved, how often the best basin was
+/// found, shifted geometric means of each cost (shift 10; of seconds 1 ms) with failures charged 10
+/// times the largest cost of their instance.
 CsvTable SolverTable(const BenchResults& results);
 /// A row per target, cost and pair of solvers: on how many instances both end in one basin, who
 /// needs less how often, and both profiles at the ratios 1, 2 and 10.

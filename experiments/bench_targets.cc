@@ -65,17 +65,21 @@ double TargetEnergy(const BenchInstance& instance, const BenchTarget& target,
 std::array<double, 3> CostsTo(double energy, const std::vector<ShortTrace>& traces,
                               const std::vector<bool>& is_timed, double unit_seconds) {
   if (traces.empty() || std::isnan(energy)) return {kInfinity, kInfinity, kInfinity};
-  const std::size_t row = FirstRow(traces[0], energy);
-  if (row >= traces[0].energies.size()) return {kInfinity, kInfinity, kInfinity};
-  std::vector<double> seconds;
-  for (std::size_t k = 0; k < traces.size(); ++k) {
-    const std::size_t at = FirstRow(traces[k], energy);
-    if (is_timed[k] && at < traces[k].seconds.size()) seconds.push_back(traces[k].seconds[at]);
-  }
   // The clock's own step: no cost is 0.
   constexpr double kTick = 1e-9;
-  const double median = seconds.empty() ? kNan : std::max(Median(seconds), kTick);
-  return {std::max(1.0, traces[0].evaluations[row]), median / unit_seconds, median};
+  std::vector<double> evaluations;
+  std::vector<double> seconds;
+  for (std::size_t k = 0; k < traces.size(); ++k) {
+    const std::size_t row = FirstRow(traces[k], energy);
+    const bool reached = row < traces[k].energies.size();
+    evaluations.push_back(reached ? std::max(1.0, traces[k].evaluations[row]) : kInfinity);
+    if (!is_timed[k]) continue;
+    seconds.push_back(reached ? std::max(kTick, traces[k].seconds[row]) : kInfinity);
+  }
+  const double calls = Median(evaluations);
+  const double unknown = std::isinf(calls) ? kInfinity : kNan;  // a failure needs no clock
+  const double time = seconds.empty() ? unknown : Median(seconds);
+  return {calls, std::isinf(time) ? kInfinity : time / unit_seconds, time};
 }
 
 }  // namespace batten

@@ -23,9 +23,10 @@ ShortTrace ReadShortTrace(const std::string& path);
 double TargetEnergy(const BenchInstance& instance, const BenchTarget& target,
                     double minimum_energy);
 
-/// Costs of a run up to the first row of its trace with E at most `energy`: evaluations of the
-/// first trace, times the median over all; infinity where it is not reached. Evaluations count from
-/// 1, so that ratios can be formed. NaN: times that are not known.
+/// Costs of a run up to the first row of its trace with E at most `energy`: medians over its
+/// repetitions, of which one that does not reach it, or whose trace is empty since it failed, is
+/// infinity. Evaluations count from 1, so that ratios can be formed. Times are of the timed
+/// repetitions; NaN: not known.
 std::array<double, 3> CostsTo(double energy, const std::vector<ShortTrace>& traces,
                               const std::vector<bool>& is_timed, double unit_seconds);
 

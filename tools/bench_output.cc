@@ -1,5 +1,6 @@
 #include "tools/bench_output.h"
 
+#include "cost_functions/options.h"
 #include "experiments/bench_tables.h"
 #include "experiments/short_number.h"
 
@@ -19,10 +20,12 @@ void AddRows(std::string head, const CsvTable& rows, std::string* text) {
     const auto Add = [&line](const std::string& cell, std::size_t columns) {
       line += std::string(columns > cell.size() ? columns - cell.size() : 1, ' ') + cell;
     };
-    Add(rows.Text(row, "solved") + "/" + rows.Text(row, "instances"), 9);
+    const double not_run = rows.Number(row, "not_run");
+    Add(rows.Text(row, "solved") + "/" + NumberText(rows.Number(row, "instances") - not_run), 9);
     for (const char* column : {"evaluations", "work_units", "seconds"}) {
       Add(ShortNumber(rows.Number(row, column), 3), column[0] == 's' ? 12 : 13);
     }
+    if (not_run > 0.0) line += "   " + NumberText(not_run) + " not run";
     *text += line + "\n";
   }
 }
