@@ -9,11 +9,17 @@
 #include "experiments/basins.h"
 #include "experiments/comparison_records.h"
 #include "experiments/content_hash.h"
+#include "experiments/plugin_faults.h"
 
 namespace batten {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// In a process of its own nothing can be handed back but what it says.
 std::unique_ptr<Problem> ProblemOf(const BenchSuite& suite, const BenchCell& cell) {
@@ -105,6 +111,22 @@ void AddTruthChecks(const ComparisonRow& row, const RunSpec& spec, Json* json) {
   (*json)["findings"] = FlagsOf(row, spec);
 }
 
+/// Off the solver's clock, within a part of the seconds that the process has left.
+void AddPluginChecks(const Problem& problem, const RunResult& run, const RunSpec& spec,
+                     double seconds_left, Json* json) {
+  constexpr double kPart = 0.25;
+  constexpr double kMostSeconds = 5.0;
+  const double most = std::min(kMostSeconds, kPart * seconds_left);
+  const auto wrong = TermsWithWrongGradient(problem, {problem.start(), run.x}, most);
+  if (wrong.has_value() && !wrong->empty()) {
+    (*json)["wrong_gradients"] = *wrong;
+    (*json)["findings"].push_back("wrong_gradient");
+  }
+  if (!IsOfPlugin(run.solver) || most <= 0.0) return;
+  const std::optional<bool> reads = ReadsPastX(problem, run.solver, spec, most);
+  if (reads.value_or(false)) (*json)["findings"].push_back("reads_past_x");
+}
+
 ComparisonRow RunOnce(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
                       const std::string& label) {
   ComparisonRow row;
@@ -125,7 +147,6 @@ double EvaluationSeconds(const Problem& problem, bool compile) {
   constexpr int kBatches = 7;
   constexpr double kShortest = 1e-3;
   constexpr double kLongest = 0.2;  // of all
-  using Clock = std::chrono::steady_clock;
   Objective objective(&problem, nullptr, Objective::Options{compile});
   Eigen::VectorXd x = objective.start();
   double energy = 0.0;
@@ -137,7 +158,7 @@ double EvaluationSeconds(const Problem& problem, bool compile) {
       x[0] = std::nextafter(x[0], HUGE_VAL);
       objective.Energy(x, &energy);
     }
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+    return SecondsSince(begin);
   };
   int count = 1;
   double seconds = Batch(count);
@@ -170,6 +191,7 @@ double TruthEnergy(const BenchProblem& bench, const BenchCell& cell, const Probl
 
 std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
                          const std::string& trace_file) {
+  const Clock::time_point begin = Clock::now();
   const std::unique_ptr<Problem> problem = ProblemOf(suite, cell);
   const NameSpec& solver = suite.solvers[cell.solver];
   const RunSpec spec = RuleOf(suite, cell);
@@ -189,6 +211,10 @@ std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
   const bool is_first = cell.repetition == 1;
   if (ran && is_first && !direct.known() && row.run.x.allFinite()) {
     AddEnd(*problem, row.run, spec, &json);
+  }
+  if (ran && is_first) {
+    AddPluginChecks(*problem, row.run, spec, LimitsOf(suite).wall_seconds - SecondsSince(begin),
+                    &json);
   }
   return DumpJson(json, -1);
 }

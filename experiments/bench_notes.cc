@@ -21,26 +21,47 @@ bool ProcessFailed(const nlohmann::json& row) {
          stop == "cpu_limit";
 }
 
-/// What one row has to say against its solver; empty: nothing.
-std::string Complaint(const nlohmann::json& row) {
+bool HasFlag(const nlohmann::json& row, const char* flag) {
   const std::vector<std::string> flags = TextsAt(row, "findings");
-  const auto Has = [&flags](const char* flag) {
-    return std::find(flags.begin(), flags.end(), flag) != flags.end();
-  };
+  return std::find(flags.begin(), flags.end(), flag) != flags.end();
+}
+
+/// What is looked for in one repetition only.
+std::vector<std::string> PluginFaults(const nlohmann::json& row) {
+  std::vector<std::string> faults;
+  if (HasFlag(row, "wrong_gradient")) {
+    std::string terms;
+    for (const std::string& term : TextsAt(row, "wrong_gradients")) {
+      terms += (terms.empty() ? "" : ", ") + term;
+    }
+    faults.push_back("wrong gradient: that of " + terms + " is not the one of its E");
+  }
+  if (HasFlag(row, "reads_past_x")) {
+    faults.emplace_back("reads past x: what stands behind its end changes the iterates");
+  }
+  return faults;
+}
+
+/// What one row has to say against its solver.
+std::vector<std::string> Complaints(const nlohmann::json& row) {
+  const auto Has = [&row](const char* flag) { return HasFlag(row, flag); };
   const std::string stop = TextAt(row, "stop");
-  if (ProcessFailed(row)) return stop + ": " + TextAt(row, "message");
-  if (!TextAt(row, "disagreement").empty()) return TextAt(row, "disagreement");
-  if (!TextAt(row, "failure").empty()) return "claim fails: " + TextAt(row, "failure");
-  if (Has("claim_fails")) {
-    return "claim fails: it says " + stop + ", and |g| at its end is " +
-           NumberText(NumberAt(row, "gradient_norm"));
+  if (ProcessFailed(row)) return {stop + ": " + TextAt(row, "message")};
+  std::vector<std::string> complaints;
+  if (!TextAt(row, "disagreement").empty()) {
+    complaints.push_back(TextAt(row, "disagreement"));
+  } else if (!TextAt(row, "failure").empty()) {
+    complaints.push_back("claim fails: " + TextAt(row, "failure"));
+  } else if (Has("claim_fails")) {
+    complaints.push_back("claim fails: it says " + stop + ", and |g| at its end is " +
+                         NumberText(NumberAt(row, "gradient_norm")));
   }
   if (Has("ignores_stop")) {
-    return "ignores stop: " + NumberText(NumberAt(row, "calls_past_stop")) +
-           " calls after it was told";
+    complaints.push_back("ignores stop: " + NumberText(NumberAt(row, "calls_past_stop")) +
+                         " calls after it was told");
   }
-  if (Has("no_finite_end")) return "its end is no finite number: " + stop;
-  return "";
+  if (Has("no_finite_end")) complaints.push_back("its end is no finite number: " + stop);
+  return complaints;
 }
 
 /// Each once, with the log of its first repetition, and in how many of several it was so.
@@ -48,12 +69,15 @@ void NoteComplaints(const BenchRun& run, BenchResults* results) {
   std::vector<std::string> order;
   std::map<std::string, std::pair<std::size_t, std::string>> said;  // times, log
   for (const nlohmann::json* row : run.rows) {
-    const std::string complaint = Complaint(*row);
-    if (complaint.empty()) continue;
-    auto& [times, log] = said[complaint];
-    if (times++ > 0) continue;
-    order.push_back(complaint);
-    if (ProcessFailed(*row)) log = TextAt(*row, "log");
+    for (const std::string& fault : PluginFaults(*row)) {
+      results->notes.push_back(PlaceOf(*results, run) + ": " + fault);
+    }
+    for (const std::string& complaint : Complaints(*row)) {
+      auto& [times, log] = said[complaint];
+      if (times++ > 0) continue;
+      order.push_back(complaint);
+      if (ProcessFailed(*row)) log = TextAt(*row, "log");
+    }
   }
   for (const std::string& complaint : order) {
     const auto& [times, log] = said[complaint];
@@ -70,8 +94,7 @@ void NoteRuns(BenchResults* results) {
   for (const BenchRun& run : results->runs) {
     NoteComplaints(run, results);
     for (const nlohmann::json* row : run.rows) {
-      const std::vector<std::string> flags = TextsAt(*row, "findings");
-      const bool belied = std::count(flags.begin(), flags.end(), "claim_fails") > 0;
+      const bool belied = HasFlag(*row, "claim_fails") || !PluginFaults(*row).empty();
       if (belied || !TextAt(*row, "disagreement").empty()) results->some_claim_failed = true;
       StopReason reason = StopReason::kNotRun;
       const std::string stop = TextAt(*row, "stop");

@@ -5,10 +5,11 @@
 
 namespace batten {
 
-/// A vector of 512 k - 3 numbers with a page behind it that must not be touched: who reads two or
-/// more numbers past its end gets a segmentation fault. The one number between is given by
-/// SetNumberBehind(). For processes that are there for nothing else: it changes how the C library
-/// hands out memory. Only with glibc's allocator, which works() says.
+/// A vector at the end of pages of its own, with one behind them that must not be touched: who
+/// reads far past its end gets a segmentation fault. What stands between is given by
+/// SetNumbersBehind(): of 512 k - 3 numbers it is one. For processes that are there for nothing
+/// else: it changes how the C library hands out memory. Only with glibc's allocator, which works()
+/// says.
 class GuardedVector {
  public:
   explicit GuardedVector(const Eigen::VectorXd& values);
@@ -18,7 +19,7 @@ class GuardedVector {
 
   bool works() const { return guard_ != nullptr; }
   Eigen::VectorXd* vector() { return &vector_; }
-  void SetNumberBehind(double value);
+  void SetNumbersBehind(double value);
 
  private:
   Eigen::VectorXd vector_;

@@ -291,7 +291,7 @@ CheckVerdict ChecksMemory(const std::string& registered) {
     for (const int run : {0, 1}) {
       GuardedVector x(StartOf(row));
       if (!x.works()) return {true, "not tried: this allocator leaves no place for a guard"};
-      x.SetNumberBehind(run == 0 ? 0.0 : std::nan(""));
+      x.SetNumbersBehind(run == 0 ? 0.0 : std::nan(""));
       StoppingContext context(3, kNever);
       MinimizeFrom(row, solver, &context, x.vector());
       ends[run] = *x.vector();

@@ -332,7 +332,7 @@ CheckVerdict ChecksMemory(const std::string& name) {
     if (!x.works()) return {true, "not tried: this allocator leaves no place for a guard"};
     ValueAt ends[2];
     for (const int run : {0, 1}) {
-      x.SetNumberBehind(run == 0 ? 0.0 : std::nan(""));
+      x.SetNumbersBehind(run == 0 ? 0.0 : std::nan(""));
       ends[run] = Evaluate(family, *x.vector());
     }
     if (!SameBits(ends[0], ends[1])) {

@@ -59,7 +59,8 @@ std::string NotesText(const BenchResults& results) {
 int Judge(const BenchResults& results, bool strict, CommandOutput* output) {
   if (results.some_claim_failed) {
     output->error =
-        "a claim failed its audit, or a solver disagrees with the direct answer: notes.md";
+        "a claim failed its audit, a solver disagrees with the direct answer, or a plugin has a "
+        "fault: notes.md";
     return kDisagreement;
   }
   if (strict && results.some_failed) {

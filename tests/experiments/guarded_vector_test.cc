@@ -27,7 +27,7 @@ double Read(const Eigen::VectorXd& vector, Eigen::Index place) {
 TEST(GuardedVector, IsAVectorLikeAnother) {
   EXPECT_CHILD_SAYS_YES(
       const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(kSize, 0.0, 1.0);
-      GuardedVector x(values); bool yes = *x.vector() == values; x.SetNumberBehind(7.0);
+      GuardedVector x(values); bool yes = *x.vector() == values; x.SetNumbersBehind(7.0);
       yes = yes && *x.vector() == values && (!x.works() || Read(*x.vector(), kSize) == 7.0););
 }
 
@@ -43,9 +43,25 @@ TEST(GuardedVector, HasAPageBehindItThatMustNotBeTouched) {
       ::testing::KilledBySignal(SIGSEGV), "");
 }
 
-TEST(GuardedVector, WorksForWholePagesOnly) {
-  EXPECT_CHILD_SAYS_YES(const bool yes = GuardedVector(Eigen::VectorXd::Zero(1533)).works(););
-  EXPECT_CHILD_SAYS_YES(const bool yes = !GuardedVector(Eigen::VectorXd::Zero(500)).works(););
+TEST(GuardedVector, WorksForAnySize) {
+  for (const Eigen::Index size : {1, 20, 500, 510, 511, 1533}) {
+    EXPECT_CHILD_SAYS_YES(GuardedVector x(Eigen::VectorXd::Zero(size)); x.SetNumbersBehind(7.0);
+                          const bool yes = x.works() && x.vector()->isZero(0.0););
+  }
+}
+
+TEST(GuardedVector, FillsAllNumbersUpToThePageBehindIt) {
+  // A page holds the allocator's header of 16 bytes, 500 numbers, and 10 more.
+  EXPECT_CHILD_SAYS_YES(GuardedVector x(Eigen::VectorXd::Zero(500)); x.SetNumbersBehind(7.0);
+                        const bool yes =
+                            Read(*x.vector(), 500) == 7.0 && Read(*x.vector(), 509) == 7.0;);
+  EXPECT_EXIT(
+      {
+        GuardedVector x(Eigen::VectorXd::Zero(500));
+        static_cast<void>(Read(*x.vector(), 510));
+        std::_Exit(2);
+      },
+      ::testing::KilledBySignal(SIGSEGV), "");
 }
 #endif
 

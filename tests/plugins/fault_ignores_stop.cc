@@ -15,7 +15,7 @@ class Faulty final : public batten::Solver {
                              Eigen::VectorXd* x) override {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x->size());
     context->Iterate(*x);
-    for (int step = 0; step < 10; ++step) {
+    for (int step = 0; step < 50; ++step) {
       objective->Gradient(*x, &gradient);
       *x -= 0.01 * gradient;
       context->Iterate(*x);

@@ -1,0 +1,32 @@
+#ifndef BATTEN_EXPERIMENTS_PLUGIN_FAULTS_H_
+#define BATTEN_EXPERIMENTS_PLUGIN_FAULTS_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/run.h"
+
+namespace batten {
+
+// What `batten check` asks of a plugin at length, asked in short of the run at hand.
+
+/// Whether the solver, or one that it wraps, is a plugin's.
+bool IsOfPlugin(const NameSpec& solver);
+
+/// Terms of plugins, as the problem names them, whose gradient is not that of their E near one of
+/// `points` (all variables, scaled as inside): along two directions the Taylor remainder does not
+/// fall with the square of the step. Some fifty evaluations of such a term per point; nothing if
+/// they would take more than `max_seconds`.
+std::optional<std::vector<std::string>> TermsWithWrongGradient(
+    const Problem& problem, const std::vector<Eigen::VectorXd>& points, double max_seconds);
+
+/// Whether what stands behind the end of x changes the first iterates of `solver`, or reading it
+/// ends the program; tried in a process of its own. Nothing where it cannot be tried, takes longer
+/// than `max_seconds` or gives other iterates each time.
+std::optional<bool> ReadsPastX(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
+                               double max_seconds);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_PLUGIN_FAULTS_H_

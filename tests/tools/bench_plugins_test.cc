@@ -1,0 +1,158 @@
+// Plugins in `bench`: a suite with a solver and a term of one, and what it finds in plugins with one
+// fault each.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "tests/tools/plugin_files.h"
+#include "tests/tools/program.h"
+
+namespace batten {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+json SuiteOf(const std::vector<std::string>& plugins) {
+  json suite = {{"format", "batten.suite/1"},
+                {"name", "plugins"},
+                {"plugins", json::array()},
+                {"problems",
+                 {{{"synthetic", "star"},
+                   {"name", "star"},
+                   {"points", 60},
+                   {"control_points", 10},
+                   {"start", "centroid"}}}},
+                {"solvers", {"faulty"}},
+                {"budgets", {{"seconds", 5}, {"iterations", 200}}},
+                {"warm_up", 0},
+                {"repetitions", 2}};
+  for (const std::string& plugin : plugins) suite["plugins"].push_back(Plugin(plugin));
+  return suite;
+}
+
+class BenchPlugins : public ::testing::Test {
+ protected:
+  Ended RunSuite(const json& suite) const {
+    return RunBatten({"bench", folder_.Write("suite.json", suite.dump()),
+                      "--out=" + (folder_ / "out"), "--nofigures", "--quiet"});
+  }
+  std::vector<json> Rows() const {
+    std::vector<json> rows;
+    for (const std::string& line : Lines(ReadFile(folder_ / "out/cells.jsonl"))) {
+      rows.push_back(json::parse(line));
+    }
+    return rows;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BenchPlugins, SolverAndTermHaveTheirRows) {
+  json suite = SuiteOf({"barzilai_borwein", "tension"});
+  suite["solvers"] = {"barzilai_borwein", "banded_cholesky"};
+  suite["terms"] = {"distance", "distance,tension/weight=1e-3"};
+  const Ended ended = RunSuite(suite);
+  ASSERT_EQ(ended.status, 0) << ended.err << ended.out;
+  const std::vector<json> rows = Rows();
+  ASSERT_EQ(rows.size(), 8u);
+  std::map<std::string, std::map<std::string, double>> energies;
+  for (const json& row : rows) {
+    EXPECT_TRUE(row["findings"].empty()) << row["findings"].dump();
+    EXPECT_EQ(row["plugins"].size(), 2u);
+    energies[row["terms"]][row["solver"]] = row["energy"];
+  }
+  ASSERT_EQ(energies.size(), 2u);
+  for (const auto& [terms, of_solver] : energies) {
+    ASSERT_EQ(of_solver.size(), 2u) << terms;
+    const double direct = of_solver.at("banded_cholesky");
+    EXPECT_NEAR(of_solver.at("barzilai_borwein"), direct, 1e-9 * (1.0 + direct)) << terms;
+  }
+  // The term counts: the minimum with it lies higher.
+  EXPECT_GT(energies["distance+tension/weight=1e-3"]["banded_cholesky"],
+            energies["distance"]["banded_cholesky"] + 1e-6);
+  const json manifest = json::parse(ReadFile(folder_ / "out/manifest.json"));
+  EXPECT_EQ(manifest["plugins"].size(), 2u);
+}
+
+struct Fault {
+  std::string plugin;
+  std::string stop;     // of every repetition; "": any
+  std::string finding;  // of the first
+  int status = 0;
+  std::string note;
+};
+void PrintTo(const Fault& fault, std::ostream* stream) { *stream << fault.plugin; }
+
+class FaultyPluginInBench : public BenchPlugins, public ::testing::WithParamInterface<Fault> {};
+
+TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
+  const Fault& fault = GetParam();
+  json suite = SuiteOf({fault.plugin});
+  suite["solvers"] = {"faulty", "cg"};
+  if (fault.plugin == "fault_ignores_stop") suite["budgets"]["iterations"] = 30;
+  if (fault.plugin == "fault_sleeper") suite["budgets"]["wall_seconds"] = 1.0;
+  const Ended ended = RunSuite(suite);
+  EXPECT_EQ(ended.status, fault.status) << ended.err << ended.out;
+  EXPECT_THAT(ended.out, HasSubstr(fault.note));
+  int first = 0;
+  for (const json& row : Rows()) {
+    if (row["solver"] == "cg") {
+      EXPECT_EQ(row["stop"], "gradient_small");
+      EXPECT_TRUE(row["findings"].empty()) << row["findings"].dump();
+      continue;
+    }
+    EXPECT_THAT(row["stop"].get<std::string>(), HasSubstr(fault.stop));
+    if (row["repetition"] != 1) continue;
+    ++first;
+    EXPECT_THAT(row["findings"].get<std::vector<std::string>>(), Contains(fault.finding));
+  }
+  EXPECT_EQ(first, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Faults, FaultyPluginInBench,
+    ::testing::Values(
+        Fault{"fault_crasher", "crashed", "crashed", 0, "ended by signal 6 (Aborted)"},
+        Fault{"fault_throws", "crashed", "crashed", 0, "threw an exception: no such luck"},
+        Fault{"fault_sleeper", "wall_limit", "wall_limit", 0, "of wall time"},
+        Fault{"fault_nan", "", "no_finite_end", 0, "its end is no finite number"},
+        Fault{"fault_liar", "", "claim_fails", 3, "claim fails: "},
+        Fault{"fault_ignores_stop", "", "ignores_stop", 0, "ignores stop: "},
+        Fault{"fault_reads_past_x", "", "reads_past_x", 3, "faulty: reads past x: "}),
+    [](const auto& row) { return row.param.plugin.substr(6); });
+
+TEST_F(BenchPlugins, StopsAMemoryHog) {
+  if (!kCanLimitMemory) GTEST_SKIP() << "the sanitizer needs terabytes of addresses";
+  json suite = SuiteOf({"fault_memory_hog"});
+  suite["budgets"]["memory_mb"] = 256;
+  EXPECT_THAT(RunSuite(suite).out, HasSubstr("needs more than 256 MB of memory"));
+}
+
+TEST_F(BenchPlugins, FlagsATermWithAWrongGradient) {
+  json suite = SuiteOf({"fault_wrong_gradient", "tension"});
+  suite["solvers"] = {"lbfgs", "newton"};
+  suite["terms"] = {"distance,tension/weight=0.1", "distance,faulty_term/weight=0.5"};
+  const Ended ended = RunSuite(suite);
+  EXPECT_EQ(ended.status, 3) << ended.err << ended.out;
+  EXPECT_THAT(ended.out,
+              HasSubstr("lbfgs: wrong gradient: that of faulty_term/weight=0.5 is not the one"));
+  int wrong = 0;
+  for (const json& row : Rows()) {
+    const bool is_wrong = row["terms"] == "distance+faulty_term/weight=0.5";
+    const auto findings = row["findings"].get<std::vector<std::string>>();
+    if (!is_wrong || row["repetition"] != 1) {
+      EXPECT_THAT(findings, Not(Contains("wrong_gradient"))) << row["solver"];
+      continue;
+    }
+    ++wrong;
+    EXPECT_THAT(findings, Contains("wrong_gradient")) << row["solver"];
+    EXPECT_EQ(row["wrong_gradients"], json({"faulty_term/weight=0.5"}));
+  }
+  EXPECT_EQ(wrong, 2);
+}
+
+}  // namespace
+}  // namespace batten
