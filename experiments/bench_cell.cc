@@ -1,8 +1,11 @@
 #include "experiments/bench_cell.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 
@@ -50,11 +53,16 @@ void WarmUp(const Problem& problem, const NameSpec& solver, RunSpec spec, int ru
   }
 }
 
-bool WriteTrace(const Problem& problem, const RunResult& run, const std::string& path) {
+/// Empty, or why it cannot be written; then nothing is left of it.
+std::string WriteTrace(const Problem& problem, const RunResult& run, const std::string& path) {
+  errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file << RunTraceCsv(problem, run);
   file.close();
-  return !file.fail();
+  if (!file.fail()) return "";
+  const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+  std::remove(path.c_str());
+  return kCannotWrite + path + why;
 }
 
 /// Claims of a minimum whose |g| the audit does not cover are held against what run control found:
@@ -200,7 +208,8 @@ std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
   const DirectReference direct(*problem);
   MeasureEnd(*problem, direct, spec, &row);
   const bool ran = row.run.skipped.empty();
-  if (ran && !WriteTrace(*problem, row.run, trace_file)) return kCannotWrite + trace_file;
+  const std::string failure = ran ? WriteTrace(*problem, row.run, trace_file) : "";
+  if (!failure.empty()) return failure;
   Json json = CellJson(row, direct.minimum_energy(), spec);
   AddPlace(suite, cell, &json);
   AddTruthChecks(row, spec, &json);

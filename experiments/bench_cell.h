@@ -11,8 +11,8 @@ namespace batten {
 
 /// What the process of a cell does: makes the problem anew, runs the solver from its start (warm-up
 /// runs first, thrown away), measures the end, and writes the trace. Returns the row for
-/// cells.jsonl without what only the parent knows, or kCannotWrite and the trace's name, which is
-/// no fault of the solver.
+/// cells.jsonl without what only the parent knows, or kCannotWrite, the trace's name and why, which
+/// is no fault of the solver.
 inline constexpr char kCannotWrite[] = "cannot write ";
 std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
                          const std::string& trace_file);

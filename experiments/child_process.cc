@@ -64,13 +64,14 @@ void WriteAll(int file, const std::string& text) {
   }
 }
 
-/// Signals as a program finds them at its start, no file of the parent but `answer`, which moves to
-/// number 3, and the log.
+/// Signals as a program finds them at its start, but that a file which must not grow is an error of
+/// writing; no file of the parent but `answer`, which moves to number 3, and the log.
 void LeaveParent(pid_t parent, int answer, const std::string& log_file) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);
   setpgid(0, 0);  // an interrupt at the terminal is the parent's
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) signal(number, SIG_DFL);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+  signal(SIGXFSZ, SIG_IGN);
   constexpr int kAnswerFile = 3;
   const int log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);

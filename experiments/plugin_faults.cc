@@ -117,7 +117,9 @@ std::vector<Eigen::VectorXd> FirstIterates(const Problem& problem, const NameSpe
   if (!x.works()) return {};
   x.SetNumbersBehind(number_behind);
   std::string error;
-  SolverRegistry::Global().Make(solver, nullptr, &error)->Minimize(&objective, &context, x.vector());
+  SolverRegistry::Global()
+      .Make(solver, nullptr, &error)
+      ->Minimize(&objective, &context, x.vector());
   std::vector<Eigen::VectorXd> iterates = context.iterates();
   iterates.push_back(*x.vector());
   return iterates;

@@ -128,6 +128,20 @@ TEST_F(Bench, OnAFullDiskLosesNothingThatIsFinished) {
   EXPECT_EQ(Keys("out").size(), 60u);
 }
 
+TEST_F(Bench, ATraceThatIsTooLongForItsFileIsAnErrorOfWriting) {
+  json suite = GoodSuite();
+  suite["solvers"] = {"lspia"};
+  suite["problems"].erase(0);
+  suite["budgets"] = {{"iterations", 1000}};
+  suite["rule"] = {{"gradient_tolerance", 0}};
+  Program::Streams streams;
+  streams.file_size = 20'000;  // a row of a trace has more than 50 bytes
+  const Ended full = Program(Arguments(Suite(suite), "out"), streams).Wait();
+  ExpectRefused(full, {"cannot write", "out/traces/", ".csv: File too large"});
+  EXPECT_TRUE(Keys("out").empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/traces"));
+}
+
 TEST_F(Bench, PartsMergeToTheWhole) {
   const std::string suite = Suite(GoodSuite());
   ASSERT_EQ(RunIn(suite, "whole").status, 0);

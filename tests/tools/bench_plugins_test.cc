@@ -1,5 +1,5 @@
-// Plugins in `bench`: a suite with a solver and a term of one, and what it finds in plugins with one
-// fault each.
+// Plugins in `bench`: a suite with a solver and a term of one, and what it finds in plugins with
+// one fault each.
 #include <gmock/gmock.h>
 
 #include <map>
