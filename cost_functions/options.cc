@@ -250,6 +250,7 @@ bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
       const bool integer = info->kind == OptionInfo::Kind::kInteger;
       *error = "option " + name + " of " + spec.name + " is " + text + ", must be " +
                (integer ? "an integer, " : "") + info->RangeText();
+      if (!info->words.empty()) *error += "; did you mean " + NearestName(text, info->words) + "?";
       return false;
     }
   }

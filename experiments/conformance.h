@@ -21,8 +21,11 @@ struct ConformanceCheck {
   std::function<CheckVerdict()> run;
 };
 
+/// A word of an option often makes another method: what of a solver is checked.
+enum class SolverVariants { kUsual, kEachWord };
+
 /// The checks of a registered solver: docs/plugins.md says what each asks for.
-std::vector<ConformanceCheck> SolverChecks(const std::string& registered);
+std::vector<ConformanceCheck> SolverChecks(const std::string& registered, SolverVariants which);
 /// The same of a registered term.
 std::vector<ConformanceCheck> TermChecks(const std::string& registered);
 

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -119,16 +120,17 @@ CheckVerdict ChecksOptions(const std::string& registered) {
 
 /// One run under run control.
 RunResult RunOf(const Problem& problem, const std::string& solver, RunSpec* spec) {
+  constexpr double kOfTheUsual = 5.0;
+  constexpr double kOfAVariant = 0.2;  // there may be many, and slow ones
   spec->max_iterations = 500;
-  spec->max_seconds = 5.0;
+  spec->max_seconds = Parsed(solver).options.empty() ? kOfTheUsual : kOfAVariant;
   RunResult result;
   std::string error;
   if (!Run(problem, Parsed(solver), *spec, &result, &error)) result.skipped = error;
   return result;
 }
 
-CheckVerdict ChecksDescent(const std::string& registered) {
-  const std::string solver = UsualName(registered);
+CheckVerdict ChecksDescent(const std::string& solver) {
   const std::vector<Supported> supported = SupportedOf(solver, ExampleProblems());
   if (supported.empty()) return Failed("it takes none of the example problems");
   std::string names;
@@ -157,8 +159,7 @@ CheckVerdict ChecksDescent(const std::string& registered) {
   return {true, names};
 }
 
-CheckVerdict ChecksClaims(const std::string& registered) {
-  const std::string solver = UsualName(registered);
+CheckVerdict ChecksClaims(const std::string& solver) {
   int num_audited = 0;
   for (const Supported& row : SupportedOf(solver, ExampleProblems())) {
     RunSpec spec;
@@ -193,8 +194,7 @@ std::string AskedAfterStop(const StoppingContext& context) {
          std::to_string(context.booked_after_stop()) + " iterates after a stop";
 }
 
-CheckVerdict ChecksStopAtIterate(const std::string& registered) {
-  const std::string solver = UsualName(registered);
+CheckVerdict ChecksStopAtIterate(const std::string& solver) {
   int num_runs = 0;
   for (const Supported& row : SupportedOf(solver, ExampleProblems())) {
     for (const int last : {0, 1, 3}) {
@@ -215,8 +215,7 @@ CheckVerdict ChecksStopAtIterate(const std::string& registered) {
   return {true, std::to_string(num_runs) + " runs"};
 }
 
-CheckVerdict ChecksStopAtEvaluation(const std::string& registered) {
-  const std::string solver = UsualName(registered);
+CheckVerdict ChecksStopAtEvaluation(const std::string& solver) {
   int num_runs = 0;
   for (const Supported& row : SupportedOf(solver, ExampleProblems())) {
     StoppingContext all(kFewIterations, kNever);
@@ -258,8 +257,7 @@ std::string WhereDifferent(const StoppingContext& one, const StoppingContext& tw
   return one.iterates().size() == two.iterates().size() ? "" : "in the number of iterates";
 }
 
-CheckVerdict ChecksRepeats(const std::string& registered, int threads) {
-  const std::string solver = UsualName(registered);
+CheckVerdict ChecksRepeats(const std::string& solver, int threads) {
   int num_runs = 0;
   std::vector<Supported> supported = SupportedOf(solver, ExampleProblems());
   std::vector<StoppingContext> first;
@@ -283,8 +281,7 @@ CheckVerdict ChecksRepeats(const std::string& registered, int threads) {
   return {true, std::to_string(num_runs) + " runs"};
 }
 
-CheckVerdict ChecksMemory(const std::string& registered) {
-  const std::string solver = UsualName(registered);
+CheckVerdict ChecksMemory(const std::string& solver) {
   int num_runs = 0;
   for (const Supported& row : SupportedOf(solver, PageSizedProblems(""))) {
     Eigen::VectorXd ends[2];
@@ -304,28 +301,66 @@ CheckVerdict ChecksMemory(const std::string& registered) {
   return {true, std::to_string(num_runs) + " runs"};
 }
 
+/// As it is usually written, and with each other word of its options.
+std::vector<std::string> VariantsOf(const std::string& registered, SolverVariants which) {
+  const std::string usual = UsualName(registered);
+  std::vector<std::string> variants = {usual};
+  if (which == SolverVariants::kUsual) return variants;
+  for (const OptionInfo& option : SolverRegistry::Global().Find(registered)->options) {
+    for (const std::string& word : option.words) {
+      if (word == option.default_word) continue;
+      variants.push_back(registered + "/" + option.name + "=" + word +
+                         usual.substr(registered.size()));
+    }
+  }
+  return variants;
+}
+
+ConformanceCheck OfEachVariant(const char* name, const char* what, const std::string& registered,
+                               SolverVariants which,
+                               std::function<CheckVerdict(const std::string& solver)> check) {
+  return {name, what, [registered, which, check = std::move(check)]() -> CheckVerdict {
+            CheckVerdict usual;
+            std::size_t count = 0;
+            for (const std::string& variant : VariantsOf(registered, which)) {
+              const bool is_usual = count == 0;
+              if (!is_usual && SupportedOf(variant, ExampleProblems()).empty()) continue;
+              const CheckVerdict verdict = check(variant);
+              if (is_usual) usual = verdict;
+              if (!verdict.passed) {
+                return is_usual ? verdict : Failed(variant + ": " + verdict.detail);
+              }
+              ++count;
+            }
+            if (count > 1) usual.detail += "; likewise of " + std::to_string(count - 1) + " words";
+            return usual;
+          }};
+}
+
 }  // namespace
 
-std::vector<ConformanceCheck> SolverChecks(const std::string& registered) {
+std::vector<ConformanceCheck> SolverChecks(const std::string& registered, SolverVariants which) {
+  const auto each = [&](const char* name, const char* what,
+                        std::function<CheckVerdict(const std::string& solver)> check) {
+    return OfEachVariant(name, what, registered, which, std::move(check));
+  };
+  const auto Repeats = [](int threads) {
+    return [threads](const std::string& solver) { return ChecksRepeats(solver, threads); };
+  };
   return {
       {"description", "says what it is and where it is from, options with help",
        [registered] { return ChecksDescription(registered); }},
       {"options", "runs at both ends and with each word of each option, refuses others",
        [registered] { return ChecksOptions(registered); }},
-      {"descent", "lowers E on what it takes, and books its start",
-       [registered] { return ChecksDescent(registered); }},
-      {"claims", "what it says of its end passes the audit",
-       [registered] { return ChecksClaims(registered); }},
-      {"stop at iterate", "returns at the iterate that says stop, with x as it was booked",
-       [registered] { return ChecksStopAtIterate(registered); }},
-      {"stop at evaluation", "asks for nothing after an evaluation that is refused",
-       [registered] { return ChecksStopAtEvaluation(registered); }},
-      {"repeatability", "gives the same bits twice, with other runs between",
-       [registered] { return ChecksRepeats(registered, 1); }},
-      {"threads", "gives the same bits with three threads as with one",
-       [registered] { return ChecksRepeats(registered, 3); }},
-      {"memory", "reads nothing behind the end of x",
-       [registered] { return ChecksMemory(registered); }},
+      each("descent", "lowers E on what it takes, and books its start", &ChecksDescent),
+      each("claims", "what it says of its end passes the audit", &ChecksClaims),
+      each("stop at iterate", "returns at the iterate that says stop, with x as it was booked",
+           &ChecksStopAtIterate),
+      each("stop at evaluation", "asks for nothing after an evaluation that is refused",
+           &ChecksStopAtEvaluation),
+      each("repeatability", "gives the same bits twice, with other runs between", Repeats(1)),
+      each("threads", "gives the same bits with three threads as with one", Repeats(3)),
+      each("memory", "reads nothing behind the end of x", &ChecksMemory),
   };
 }
 

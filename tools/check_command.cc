@@ -73,7 +73,8 @@ std::vector<NamedCheck> ChecksOf(const LoadedPlugin& plugin) {
   std::vector<NamedCheck> checks;
   for (const PluginName& subject : plugin.names) {
     std::vector<ConformanceCheck> of_subject;
-    if (subject.kind == "solver") of_subject = SolverChecks(subject.name);
+    if (subject.kind == "solver")
+      of_subject = SolverChecks(subject.name, SolverVariants::kEachWord);
     if (subject.kind == "term") of_subject = TermChecks(subject.name);
     for (ConformanceCheck& check : of_subject) checks.push_back({subject, std::move(check)});
   }

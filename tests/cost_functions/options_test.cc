@@ -192,8 +192,8 @@ TEST(ResolveOptions, AnswersAnUnknownOptionWithTheNearestAndItsRange) {
 TEST(ResolveOptions, AnswersAValueOutsideItsRangeWithTheRange) {
   EXPECT_EQ(ResolveError("lbfgs/memory=2"),
             "option memory of lbfgs is 2, must be an integer, 3 to 20");
-  EXPECT_EQ(ResolveError("lbfgs/wolfe=curry"),
-            "option wolfe of lbfgs is curry, must be one of weak, strong");
+  EXPECT_EQ(ResolveError("lbfgs/wolfe=wek"),
+            "option wolfe of lbfgs is wek, must be one of weak, strong; did you mean weak?");
   for (const char* text : {"memory=21", "memory=3.5", "memory=x", "memory=5x", "weight=-1e-300",
                            "weight=nan", "weight=1e400", "wolfe=Weak", "memory=1e300"}) {
     EXPECT_NE(ResolveError(std::string("lbfgs/") + text).find("must be"), std::string::npos);

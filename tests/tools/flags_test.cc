@@ -76,6 +76,19 @@ TEST(Flags, AnswerAnUnknownOneWithTheNearestOfTheCommand) {
   ExpectRefused(Fit({"-", "--nodegree"}), {"unknown flag"});
 }
 
+TEST(Flags, AnswerAMisspeltWordOfAnOptionWithTheNearest) {
+  ExpectRefused(RunBatten({"fit", "--problem=rhino", "--solver=lspia/step=diagnal"}),
+                {"option step of lspia is diagnal", "did you mean diagonal?"});
+  ExpectRefused(RunBatten({"fit", "--problem=rhino", "--terms=interpolation/loss=hubber"}),
+                {"did you mean huber?"});
+  ExpectRefused(RunBatten({"compare", "--problems=rhino", "--solvers=cg,lbfgs/wolfe=srtong"}),
+                {"did you mean strong?"});
+  // Numbers have no nearest one.
+  const Ended ended = RunBatten({"fit", "--problem=rhino", "--solver=lbfgs/memory=x"});
+  ExpectRefused(ended, {"option memory of lbfgs is x"});
+  EXPECT_EQ(ended.err.find("did you mean"), std::string::npos);
+}
+
 TEST(Flags, DoNotKnowThoseOfTheLibrariesBehindThem) {
   for (const std::string flag : {"flagfile=/dev/null", "fromenv=degree", "undefok=x", "helpfull",
                                  "minloglevel=0", "v=3", "logtostderr", "helpxml"}) {

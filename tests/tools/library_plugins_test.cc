@@ -35,10 +35,19 @@ TEST(LibraryPlugins, NloptRunsTheAlgorithmThatIsNamed) {
   if (!std::filesystem::exists(Plugin("nlopt"))) GTEST_SKIP() << "NLopt is not there";
   // The names are NLopt's own (its reference manual, "NLopt Algorithms").
   const std::map<std::string, std::string> names = {
-      {"lbfgs", "L-BFGS"}, {"var1", "rank 1"},
-      {"var2", "rank 2"},  {"tnewton_precond_restart", "Newton"},
-      {"mma", "MMA"},      {"ccsaq", "CCSA"},
-      {"slsqp", "(SQP)"},  {"sbplx", "Sbplx"}};
+      {"lbfgs", "L-BFGS"},
+      {"var1", "rank 1"},
+      {"var2", "rank 2"},
+      {"tnewton_precond_restart", "Newton"},
+      {"mma", "MMA"},
+      {"ccsaq", "CCSA"},
+      {"slsqp", "(SQP)"},
+      {"sbplx", "Sbplx"},
+      {"tnewton", "Truncated Newton"},
+      {"tnewton_restart", "Truncated Newton with restarting"},
+      {"tnewton_precond", "Preconditioned truncated Newton"},
+      {"bobyqa", "BOBYQA"},
+      {"neldermead", "Nelder-Mead"}};
   std::set<double> energies;
   for (const auto& [word, name] : names) {
     SCOPED_TRACE(word);
@@ -46,12 +55,30 @@ TEST(LibraryPlugins, NloptRunsTheAlgorithmThatIsNamed) {
     EXPECT_THAT(NoteOf(fit), HasSubstr(name));
     EXPECT_LT(fit["energy"].get<double>(), fit["start"]["energy"].get<double>());
     // Derivative-free ones ask for no gradient.
-    EXPECT_EQ(fit["counts"]["gradient_calls"].get<int>() == 0, word == "sbplx");
+    EXPECT_EQ(fit["counts"]["gradient_calls"].get<int>() == 0,
+              word == "sbplx" || word == "bobyqa" || word == "neldermead");
     energies.insert(fit["energy"].get<double>());
   }
   // Different algorithms are at different places after 60 iterations.
   EXPECT_EQ(energies.size(), names.size());
 }
+
+class LibraryPlugin : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(LibraryPlugin, PassesTheConformanceSuiteWithEachAlgorithm) {
+  if (!std::filesystem::exists(Plugin(GetParam()))) GTEST_SKIP() << "the library is not there";
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"check", Plugin(GetParam()), "--quiet", "--seconds_per_check=120",
+                                 "--badge=" + (folder / "badge.svg")});
+  EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("9 of 9 checks passed"));
+  // Beside the one that is used by default.
+  const char* const others = GetParam() == "nlopt" ? "likewise of 12 words" : "likewise of 3 words";
+  EXPECT_THAT(ended.out, HasSubstr(others));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LibraryPlugin, ::testing::Values("nlopt", "liblbfgs"),
+                         [](const auto& row) { return row.param; });
 
 TEST(LibraryPlugins, LibLbfgsHeedsItsOptions) {
   if (!std::filesystem::exists(Plugin("liblbfgs"))) GTEST_SKIP() << "libLBFGS is not there";
