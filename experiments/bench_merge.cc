@@ -1,5 +1,6 @@
 #include "experiments/bench_merge.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "experiments/atomic_file.h"
@@ -48,7 +49,11 @@ bool MergeManifests(const std::string& out, const std::vector<BenchData>& parts,
   for (const BenchData& part : parts) {
     const auto found = part.manifest.find("sessions");
     if (found == part.manifest.end() || !found->is_array()) continue;
-    for (const nlohmann::json& session : *found) sessions.push_back(session);
+    for (const nlohmann::json& session : *found) {
+      // Those of a part that was merged before are there already.
+      const bool is_there = std::find(sessions.begin(), sessions.end(), session) != sessions.end();
+      if (!is_there) sessions.push_back(session);
+    }
   }
   manifest["sessions"] = std::move(sessions);
   return WriteFileAtomically(

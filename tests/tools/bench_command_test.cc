@@ -1,6 +1,7 @@
 // `bench`, `merge` and `regress` as processes: bad suites, killed runs, a full disk, parts.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <functional>
 #include <random>
 #include <set>
@@ -159,7 +160,57 @@ TEST_F(Bench, PartsMergeToTheWhole) {
     EXPECT_THAT(ReadFile(folder_ / "merged/notes.md"), ::testing::Not(HasSubstr("alone")));
     EXPECT_EQ(TimelessTable("merged"), TimelessTable("whole"));
     EXPECT_EQ(Keys("merged"), Keys("whole"));
+    const json manifest = json::parse(ReadFile(folder_ / "merged/manifest.json"));
+    ASSERT_EQ(manifest["sessions"].size(), 2u);
+    EXPECT_EQ(manifest["sessions"][0]["shard"], "1/2");
+    EXPECT_EQ(manifest["sessions"][1]["shard"], "2/2");
   }
+}
+
+TEST_F(Bench, AChangedDataFileRunsItsOwnCellsAgain) {
+  json suite = GoodSuite();
+  suite["problems"] = json::array();
+  std::string points = "x,y\n";
+  for (int i = 0; i < 30; ++i) points += std::to_string(i) + "," + std::to_string(i * i % 7) + "\n";
+  for (const std::string name : {"changes", "stays"}) {
+    folder_.Write(name + ".csv", points);
+    suite["problems"].push_back({{"data", name + ".csv"}, {"name", name}, {"control_points", 8}});
+  }
+  suite["solvers"] = {"cg", "lbfgs"};
+  suite["repetitions"] = 1;
+  const auto RowsOf = [this](const std::string& problem) {
+    int count = 0;
+    for (const std::string& line : Lines(ReadFile(folder_ / "out/cells.jsonl"))) {
+      count += json::parse(line)["problem"] == problem ? 1 : 0;
+    }
+    return count;
+  };
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  folder_.Write("changes.csv", points + "30,5\n");
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  EXPECT_EQ(RowsOf("changes"), 4);
+  EXPECT_EQ(RowsOf("stays"), 2);
+  // The table is of what is there now.
+  EXPECT_EQ(TimelessTable("out").size(), 5u);
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  EXPECT_EQ(RowsOf("changes"), 4);
+}
+
+TEST_F(Bench, AChangedProgramRunsAllCellsAgain) {
+  json suite = GoodSuite();
+  suite["solvers"] = {"cg"};
+  suite["repetitions"] = 1;
+  const std::string program = folder_ / "batten";
+  std::filesystem::copy(BATTEN_BINARY, program);
+  const std::string command = program + " bench " + Suite(suite) + " --out=" + (folder_ / "out") +
+                              " --nofigures --quiet > /dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(Keys("out").size(), 3u);
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(Keys("out").size(), 3u);
+  std::ofstream(program, std::ios::app) << "what stands behind a program changes no run of it";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(Keys("out").size(), 6u);
 }
 
 TEST_F(Bench, MergeRefusesAnotherSuite) {
