@@ -12,6 +12,7 @@
 #include "experiments/basins.h"
 #include "experiments/comparison_records.h"
 #include "experiments/content_hash.h"
+#include "experiments/identity_card.h"
 #include "experiments/plugin_faults.h"
 
 namespace batten {
@@ -109,7 +110,12 @@ void AddPlace(const BenchSuite& suite, const BenchCell& cell, Json* json) {
   (*json)["data_seed"] = cell.seeds.data;
   (*json)["start_seed"] = cell.seeds.start;
   (*json)["repetition"] = cell.repetition;
-  (*json)["identity"] = SolverIdentity(suite.solvers[cell.solver]);
+  const std::string identity = SolverIdentity(suite.solvers[cell.solver]);
+  (*json)["identity"] = identity;
+  ContentHash hash;
+  hash.Add(InstanceKey(suite, cell));  // program, plugins, problem, data, terms
+  hash.Add(identity);
+  (*json)["identity_hash"] = hash.Digits();
 }
 
 void AddTruthChecks(const ComparisonRow& row, const RunSpec& spec, Json* json) {
@@ -117,6 +123,10 @@ void AddTruthChecks(const ComparisonRow& row, const RunSpec& spec, Json* json) {
   (*json)["stream_points"] = row.run.stream_points;
   (*json)["calls_past_stop"] = row.run.calls_past_stop;
   (*json)["findings"] = FlagsOf(row, spec);
+  const std::string other = OptionsThatDiffer(row.run);
+  if (other.empty()) return;
+  (*json)["findings"].push_back("other_options");
+  (*json)["other_options"] = other;
 }
 
 /// Off the solver's clock, within a part of the seconds that the process has left.

@@ -48,6 +48,9 @@ std::vector<std::string> Complaints(const nlohmann::json& row) {
   const std::string stop = TextAt(row, "stop");
   if (ProcessFailed(row)) return {stop + ": " + TextAt(row, "message")};
   std::vector<std::string> complaints;
+  if (Has("other_options")) {
+    complaints.push_back("other options ran: " + TextAt(row, "other_options"));
+  }
   if (!TextAt(row, "disagreement").empty()) {
     complaints.push_back(TextAt(row, "disagreement"));
   } else if (!TextAt(row, "failure").empty()) {
@@ -94,7 +97,8 @@ void NoteRuns(BenchResults* results) {
   for (const BenchRun& run : results->runs) {
     NoteComplaints(run, results);
     for (const nlohmann::json* row : run.rows) {
-      const bool belied = HasFlag(*row, "claim_fails") || !PluginFaults(*row).empty();
+      const bool belied = HasFlag(*row, "claim_fails") || HasFlag(*row, "other_options") ||
+                          !PluginFaults(*row).empty();
       if (belied || !TextAt(*row, "disagreement").empty()) results->some_claim_failed = true;
       StopReason reason = StopReason::kNotRun;
       const std::string stop = TextAt(*row, "stop");

@@ -3,9 +3,13 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "problems/fit_problem.h"
 #include "solvers/ceres_adapter.h"
 #include "solvers/ceres_problem.h"
+#include "solvers/options_note.h"
 
 namespace batten {
 namespace {
@@ -98,6 +102,17 @@ std::string CeresLbfgsSolver::WhyUnsupported(const Objective& objective) const {
   return form == "spans" ? WhyNoCurveView(objective, "ceres_lbfgs/form=spans") : "";
 }
 
+/// As Ceres itself says after the solve.
+template <typename Summary>
+std::string RanWith(const Summary& summary) {
+  std::string interpolation =
+      ceres::LineSearchInterpolationTypeToString(summary.line_search_interpolation_type);
+  std::transform(interpolation.begin(), interpolation.end(), interpolation.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return "ceres_lbfgs/memory=" + std::to_string(summary.max_lbfgs_rank) +
+         "/interpolation=" + interpolation;
+}
+
 template <typename Options>
 void CeresLbfgsSolver::SetOptions(Options* ceres_options) const {
   // All of them, though the defaults agree today: equal points need equal options.
@@ -137,6 +152,7 @@ Outcome CeresLbfgsSolver::MinimizeObjective(Objective* objective, RunContext* co
   LeaveStoppingToRunControl(&booker, &ceres_options);
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(ceres_options, problem, state.data(), &summary);
+  context->Note(kOptionsThatRan, RanWith(summary));
   const Status status = booker.Finish(summary.IsSolutionUsable(), x);
   if (stopped || status != Status::kOk) return {context->stop_reason(), ""};
   return OwnEnd(summary);
@@ -158,6 +174,7 @@ Outcome CeresLbfgsSolver::MinimizeCeresProblem(Objective* objective, RunContext*
   LeaveStoppingToRunControl(&booker, &ceres_options);
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, problem.problem(), &summary);
+  context->Note(kOptionsThatRan, RanWith(summary));
   const Status status = booker.Finish(summary.IsSolutionUsable(), x);
   if (problem.stopped() || status != Status::kOk) return {context->stop_reason(), ""};
   return OwnEnd(summary);

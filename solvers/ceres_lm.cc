@@ -1,9 +1,11 @@
 #include "solvers/ceres_lm.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "problems/fit_problem.h"
 #include "solvers/ceres_problem.h"
+#include "solvers/options_note.h"
 
 namespace batten {
 namespace {
@@ -54,6 +56,22 @@ double FirstRadius(const OptionValues& options, const Problem& problem) {
       std::all_of(problem.terms().begin(), problem.terms().end(),
                   [](const Problem::TermInstance& term) { return term.family->rows() != nullptr; });
   return is_quadratic && !problem.has_bounds() ? kForQuadratics : kCeresDefault;
+}
+
+std::string LowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// As Ceres itself says after the solve; "auto" is answered by any.
+std::string RanWith(const ceres::Solver::Summary& summary, const OptionValues& options) {
+  std::string text =
+      "ceres_lm/strategy=" +
+      LowerCase(ceres::TrustRegionStrategyTypeToString(summary.trust_region_strategy_type));
+  if (options.Word("linear_solver") == "auto") return text;
+  return text + "/linear_solver=" +
+         LowerCase(ceres::LinearSolverTypeToString(summary.linear_solver_type_used));
 }
 
 /// Ends a solve once a free parameter has come to a bound that is there for its blocks' sake.
@@ -126,13 +144,15 @@ Outcome CeresLmSolver::DoMinimize(Objective* objective, RunContext* context, Eig
   ceres::Solver::Options ceres_options = CeresOptions(*objective, *context);
   IterateBooker booker(context, x);
   std::optional<Outcome> outcome;
+  std::string ran;
   int rebindings = 0;
   while (true) {
-    outcome = SolveBoundAt(objective, context, &ceres_options, &booker, x);
+    outcome = SolveBoundAt(objective, context, &ceres_options, &booker, x, &ran);
     if (outcome.has_value() || rebindings == kMostRebindings) break;
     ++rebindings;
   }
   context->Note("linear solver", LinearSolverWord(options_, objective->problem()));
+  context->Note(kOptionsThatRan, ran);
   if (HasFreeParameters(objective->problem())) {
     context->Note("re-bindings", std::to_string(rebindings));
   }
@@ -143,8 +163,8 @@ Outcome CeresLmSolver::DoMinimize(Objective* objective, RunContext* context, Eig
 
 std::optional<Outcome> CeresLmSolver::SolveBoundAt(Objective* objective, RunContext* context,
                                                    ceres::Solver::Options* ceres_options,
-                                                   IterateBooker* booker,
-                                                   Eigen::VectorXd* x) const {
+                                                   IterateBooker* booker, Eigen::VectorXd* x,
+                                                   std::string* ran) const {
   CeresProblem problem(objective, Evaluation::kJacobian, *x);
   problem.AddTerms();
   problem.HoldPressed();
@@ -158,6 +178,7 @@ std::optional<Outcome> CeresLmSolver::SolveBoundAt(Objective* objective, RunCont
   const Eigen::VectorXd start = problem.state();
   ceres::Solver::Summary summary;
   ceres::Solve(*ceres_options, problem.problem(), &summary);
+  *ran = RanWith(summary, options_);
   const Status status = booker->Finish(summary.IsSolutionUsable(), x);
   if (problem.stopped() || status != Status::kOk) return Outcome{context->stop_reason(), ""};
   if (summary.IsSolutionUsable() && *x != start) {

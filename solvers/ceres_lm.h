@@ -28,7 +28,7 @@ class CeresLmSolver final : public Solver {
   /// there, and then with the trust region left in *ceres_options.
   std::optional<Outcome> SolveBoundAt(Objective* objective, RunContext* context,
                                       ceres::Solver::Options* ceres_options, IterateBooker* booker,
-                                      Eigen::VectorXd* x) const;
+                                      Eigen::VectorXd* x, std::string* ran) const;
 
   OptionValues options_;
 };

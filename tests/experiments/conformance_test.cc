@@ -30,7 +30,7 @@ void ExpectAllPass(const std::string& name, const std::vector<ConformanceCheck>&
 }
 
 class BuiltInSolver : public ::testing::TestWithParam<std::string> {};
-// Each word of their options is tried by tests of their own.
+// With each word of their options it would take minutes.
 TEST_P(BuiltInSolver, PassesEveryCheck) {
   ExpectAllPass(GetParam(), SolverChecks(GetParam(), SolverVariants::kUsual));
 }

@@ -2,7 +2,10 @@
 // one fault each.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <set>
 
 #include "tests/tools/plugin_files.h"
 #include "tests/tools/program.h"
@@ -77,6 +80,38 @@ TEST_F(BenchPlugins, SolverAndTermHaveTheirRows) {
   EXPECT_EQ(manifest["plugins"].size(), 2u);
 }
 
+TEST_F(BenchPlugins, AChangedPluginRunsItsCellsAgain) {
+  json suite = SuiteOf({"fault_none"});
+  std::filesystem::copy(Plugin("fault_none"), folder_ / "mine.so");
+  suite["plugins"] = {"mine.so"};
+  ASSERT_EQ(RunSuite(suite).status, 0);
+  EXPECT_EQ(Rows().size(), 2u);
+  ASSERT_EQ(RunSuite(suite).status, 0);
+  EXPECT_EQ(Rows().size(), 2u);
+  std::ofstream(folder_ / "mine.so", std::ios::app) << "another build";
+  ASSERT_EQ(RunSuite(suite).status, 0);
+  EXPECT_EQ(Rows().size(), 4u);
+}
+
+TEST_F(BenchPlugins, IdentityIsOfSolverOptionsPluginAndProblem) {
+  json suite = SuiteOf({"fault_other_options"});
+  suite["solvers"] = {"faulty/memory=6", "faulty/memory=6/rule=second", "cg"};
+  RunSuite(suite);
+  std::map<std::string, std::set<std::string>> hashes;  // by identity
+  for (const json& row : Rows()) hashes[row["identity"]].insert(row["identity_hash"]);
+  EXPECT_EQ(hashes.count("faulty/memory=6/rule=first"), 1u);
+  std::set<std::string> all;
+  for (const auto& [identity, of_it] : hashes) {
+    EXPECT_EQ(of_it.size(), 1u) << identity;  // whatever the repetition
+    all.insert(of_it.begin(), of_it.end());
+  }
+  EXPECT_EQ(all.size(), 3u);
+  suite["problems"][0]["points"] = 61;
+  RunSuite(suite);
+  for (const json& row : Rows()) all.insert(row["identity_hash"]);
+  EXPECT_EQ(all.size(), 6u);
+}
+
 struct Fault {
   std::string plugin;
   std::string stop;     // of every repetition; "": any
@@ -121,6 +156,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"fault_nan", "", "no_finite_end", 0, "its end is no finite number"},
         Fault{"fault_liar", "", "claim_fails", 3, "claim fails: "},
         Fault{"fault_ignores_stop", "", "ignores_stop", 0, "ignores stop: "},
+        Fault{"fault_other_options", "", "other_options", 3,
+              "faulty: other options ran: asked memory=5, ran memory=6"},
         Fault{"fault_reads_past_x", "", "reads_past_x", 3, "faulty: reads past x: "}),
     [](const auto& row) { return row.param.plugin.substr(6); });
 

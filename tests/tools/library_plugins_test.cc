@@ -24,9 +24,9 @@ nlohmann::json FitBy(const std::string& plugin, const std::string& solver) {
   return nlohmann::json::parse(ReadFile(folder / "fit.json"), nullptr, false);
 }
 
-std::string NoteOf(const nlohmann::json& fit) {
+std::string NoteOf(const nlohmann::json& fit, const char* name = "algorithm that ran") {
   for (const auto& note : fit["notes"]) {
-    if (note["name"] == "algorithm that ran") return note["value"];
+    if (note["name"] == name) return note["value"];
   }
   return "";
 }
@@ -53,6 +53,7 @@ TEST(LibraryPlugins, NloptRunsTheAlgorithmThatIsNamed) {
     SCOPED_TRACE(word);
     const auto fit = FitBy("nlopt", "nlopt/algorithm=" + word);
     EXPECT_THAT(NoteOf(fit), HasSubstr(name));
+    EXPECT_EQ(NoteOf(fit, "options that ran"), "nlopt/algorithm=" + word + "/memory=10");
     EXPECT_LT(fit["energy"].get<double>(), fit["start"]["energy"].get<double>());
     // Derivative-free ones ask for no gradient.
     EXPECT_EQ(fit["counts"]["gradient_calls"].get<int>() == 0,

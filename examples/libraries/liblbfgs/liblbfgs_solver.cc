@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "solvers/options_note.h"
 #include "solvers/plugin.h"
 
 namespace {
@@ -23,6 +24,15 @@ constexpr LineSearch kLineSearches[] = {
     {"wolfe", LBFGS_LINESEARCH_BACKTRACKING_WOLFE},
     {"strong_wolfe", LBFGS_LINESEARCH_BACKTRACKING_STRONG_WOLFE},
 };
+
+/// As it stands in what the library is handed: it answers nothing.
+std::string RanWith(const lbfgs_parameter_t& parameters) {
+  std::string text = std::string(kName) + "/memory=" + std::to_string(parameters.m);
+  for (const LineSearch& row : kLineSearches) {
+    if (row.code == parameters.linesearch) text += std::string("/line_search=") + row.word;
+  }
+  return text;
+}
 
 /// One run: the library's callbacks get it as `instance`.
 struct LibraryRun {
@@ -147,6 +157,7 @@ class LibLbfgsSolver final : public batten::Solver {
     context->Note("algorithm that ran", "libLBFGS L-BFGS m=" + std::to_string(parameters.m) +
                                             " line search " + line_search_ + " (code " +
                                             std::to_string(parameters.linesearch) + ")");
+    context->Note(batten::kOptionsThatRan, RanWith(parameters));
     const auto size = static_cast<int>(x->size());
     // Of the library's own alignment.
     const std::unique_ptr<lbfgsfloatval_t, void (*)(lbfgsfloatval_t*)> variables(lbfgs_malloc(size),

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "solvers/options_note.h"
 #include "solvers/plugin.h"
 
 namespace {
@@ -39,6 +40,16 @@ constexpr Algorithm kAlgorithms[] = {
 const Algorithm& Find(const std::string& word) {
   return *std::find_if(std::begin(kAlgorithms), std::end(kAlgorithms),
                        [&word](const Algorithm& row) { return word == row.word; });
+}
+
+/// As NLopt itself answers.
+std::string RanWith(nlopt_opt optimizer) {
+  const nlopt_algorithm code = nlopt_get_algorithm(optimizer);
+  std::string text = kName;
+  for (const Algorithm& row : kAlgorithms) {
+    if (row.code == code) text += std::string("/algorithm=") + row.word;
+  }
+  return text + "/memory=" + std::to_string(nlopt_get_vector_storage(optimizer));
 }
 
 /// One run: the library's callback gets it as `data`.
@@ -142,6 +153,7 @@ class NloptSolver final : public batten::Solver {
     LibraryRun run = {objective, context, optimizer.get(), *x, HUGE_VAL, *x, *x, false, nullptr};
     nlopt_set_min_objective(optimizer.get(), &Evaluate, &run);
     nlopt_set_vector_storage(optimizer.get(), static_cast<unsigned>(memory_));
+    context->Note(batten::kOptionsThatRan, RanWith(optimizer.get()));
     Eigen::VectorXd end = *x;
     double energy = 0.0;
     const nlopt_result result = nlopt_optimize(optimizer.get(), end.data(), &energy);
