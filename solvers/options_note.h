@@ -4,8 +4,8 @@
 namespace batten {
 
 /// Name of the note in which a solver over a library says what it reads back from that library, as
-/// NAME/OPTION=VALUE/...: those of its options that the library answers for. It is held against what
-/// was asked.
+/// NAME/OPTION=VALUE/...: those of its options that the library answers for. It is held against
+/// what was asked.
 inline constexpr char kOptionsThatRan[] = "options that ran";
 
 }  // namespace batten

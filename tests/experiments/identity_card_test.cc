@@ -50,9 +50,9 @@ TEST(OptionsThatDiffer, AreNoneOfCeres) {
     ASSERT_TRUE(ParseNameSpec(solver, &spec, &error)) << error;
     ASSERT_TRUE(batten::Run(*problem, spec, RunSpec(), &run, &error)) << error;
     EXPECT_EQ(OptionsThatDiffer(run), "") << solver;
-    const bool is_noted =
-        std::any_of(run.notes.begin(), run.notes.end(),
-                    [](const auto& note) { return note.first == kOptionsThatRan; });
+    const bool is_noted = std::any_of(run.notes.begin(), run.notes.end(), [](const auto& note) {
+      return note.first == kOptionsThatRan;
+    });
     EXPECT_TRUE(is_noted) << solver;
   }
 }

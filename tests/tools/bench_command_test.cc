@@ -286,6 +286,20 @@ TEST_F(Bench, PairsLeaveOutInstancesToWhichOneDoesNotApply) {
   EXPECT_GT(with_cg, 0);
 }
 
+TEST_F(Bench, CountsExcludedCellsApart) {
+  json suite = GoodSuite();
+  suite["solvers"] = {"banded_cholesky", "cg"};
+  suite["exclude"] = {{{"problems", {"wave"}}, {"solvers", {"cg"}}}};
+  const Ended ended = RunIn(Suite(suite), "out");
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  // Of three instances.
+  EXPECT_THAT(ended.out, ::testing::ContainsRegex("cg +2/2 .* 1 not run\n"));
+  EXPECT_THAT(ended.out, ::testing::ContainsRegex("banded_cholesky +3/3 "));
+  const std::string solvers = ReadFile(folder_ / "out/solvers.csv");
+  EXPECT_THAT(solvers, HasSubstr("gap 0.1,fixed,cg,3,1,2,"));
+  EXPECT_THAT(solvers, HasSubstr("gap 0.1,fixed,banded_cholesky,3,0,3,"));
+}
+
 TEST_F(Bench, RegressTestsTimesOfAllCells) {
   const std::string suite = Suite(GoodSuite());
   ASSERT_EQ(RunIn(suite, "before").status, 0);

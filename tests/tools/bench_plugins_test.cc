@@ -2,6 +2,7 @@
 // one fault each.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -166,6 +167,22 @@ TEST_F(BenchPlugins, StopsAMemoryHog) {
   json suite = SuiteOf({"fault_memory_hog"});
   suite["budgets"]["memory_mb"] = 256;
   EXPECT_THAT(RunSuite(suite).out, HasSubstr("needs more than 256 MB of memory"));
+}
+
+TEST_F(BenchPlugins, FlagsATermWhoseGradientIsWrongAtTheEndAlone) {
+  json suite = SuiteOf({"fault_wrong_gradient"});
+  suite["solvers"] = {"lbfgs"};
+  // All control points start at the centroid, which is near 0, and end on the star; nowhere: beyond
+  // all of them.
+  suite["terms"] = {"distance,faulty_term/weight=0.001/from=0.2",
+                    "distance,faulty_term/weight=0.001/from=9"};
+  suite["repetitions"] = 1;
+  EXPECT_EQ(RunSuite(suite).status, 3);
+  for (const json& row : Rows()) {
+    const bool at_end = row["terms"] == "distance+faulty_term/weight=0.001/from=0.2";
+    const auto findings = row["findings"].get<std::vector<std::string>>();
+    EXPECT_EQ(std::count(findings.begin(), findings.end(), "wrong_gradient"), at_end ? 1 : 0);
+  }
 }
 
 TEST_F(BenchPlugins, FlagsATermWithAWrongGradient) {
