@@ -16,8 +16,8 @@ namespace {
 
 /// Of the pages in which the vector lies, which are its own. The allocator wants a number more.
 char* EndOf(const Eigen::VectorXd& vector, std::size_t page) {
-  const auto end = reinterpret_cast<std::uintptr_t>(vector.data() + vector.size() + 1);
-  return reinterpret_cast<char*>((end + page - 1) / page * page);
+  char* const end = reinterpret_cast<char*>(const_cast<double*>(vector.data() + vector.size() + 1));
+  return end + (page - reinterpret_cast<std::uintptr_t>(end) % page) % page;
 }
 
 /// Takes all memory that the allocator has at hand for blocks of this size, until it goes away:

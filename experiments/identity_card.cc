@@ -39,7 +39,7 @@ std::string DifferenceOf(const NameSpec& chain, const std::string& note) {
 std::string OptionsThatDiffer(const RunResult& run) {
   for (const auto& [name, value] : run.notes) {
     if (name != kOptionsThatRan) continue;
-    const std::string difference = DifferenceOf(run.solver, value);
+    std::string difference = DifferenceOf(run.solver, value);
     if (!difference.empty()) return difference;
   }
   return "";
