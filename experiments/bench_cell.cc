@@ -1,12 +1,8 @@
 #include "experiments/bench_cell.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <stdexcept>
 
 #include "experiments/basins.h"
@@ -14,6 +10,7 @@
 #include "experiments/content_hash.h"
 #include "experiments/identity_card.h"
 #include "experiments/plugin_faults.h"
+#include "experiments/sparse_run.h"
 
 namespace batten {
 namespace {
@@ -52,18 +49,6 @@ void WarmUp(const Problem& problem, const NameSpec& solver, RunSpec spec, int ru
     if (!Run(problem, solver, spec, &ignored, &error) || !ignored.skipped.empty()) return;
     left -= std::max(ignored.seconds, 1e-9);
   }
-}
-
-/// Empty, or why it cannot be written; then nothing is left of it.
-std::string WriteTrace(const Problem& problem, const RunResult& run, const std::string& path) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << RunTraceCsv(problem, run);
-  file.close();
-  if (!file.fail()) return "";
-  const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
-  std::remove(path.c_str());
-  return kCannotWrite + path + why;
 }
 
 /// Claims of a minimum whose |g| the audit does not cover are held against what run control found:
@@ -146,10 +131,12 @@ void AddPluginChecks(const Problem& problem, const RunResult& run, const RunSpec
 }
 
 ComparisonRow RunOnce(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
-                      const std::string& label) {
+                      std::size_t most_iterates, const std::string& label) {
   ComparisonRow row;
   std::string error;
-  if (!Run(problem, solver, spec, &row.run, &error)) throw std::runtime_error(error);
+  if (!RunKeepingSome(problem, solver, spec, most_iterates, &row.run, &error)) {
+    throw std::runtime_error(error);
+  }
   row.problem = label;
   row.solver = solver.ToString();
   row.repetitions = row.run.skipped.empty() ? 1 : 0;
@@ -208,22 +195,24 @@ double TruthEnergy(const BenchProblem& bench, const BenchCell& cell, const Probl
 }  // namespace
 
 std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
-                         const std::string& trace_file) {
+                         const BenchRecords& records) {
   const Clock::time_point begin = Clock::now();
   const std::unique_ptr<Problem> problem = ProblemOf(suite, cell);
   const NameSpec& solver = suite.solvers[cell.solver];
   const RunSpec spec = RuleOf(suite, cell);
+  const bool keeps = KeepsIterates(suite, cell) && FitsIterates(*problem, suite.keep_iterates);
+  const std::size_t most_iterates = keeps ? static_cast<std::size_t>(suite.keep_iterates) : 0;
   WarmUp(*problem, solver, spec, suite.warm_up);
-  ComparisonRow row = RunOnce(*problem, solver, spec, suite.problems[cell.problem].label);
+  ComparisonRow row =
+      RunOnce(*problem, solver, spec, most_iterates, suite.problems[cell.problem].label);
   const DirectReference direct(*problem);
   MeasureEnd(*problem, direct, spec, &row);
   const bool ran = row.run.skipped.empty();
-  const std::string failure = ran ? WriteTrace(*problem, row.run, trace_file) : "";
-  if (!failure.empty()) return failure;
   Json json = CellJson(row, direct.minimum_energy(), spec);
   AddPlace(suite, cell, &json);
   AddTruthChecks(row, spec, &json);
-  json["trace_rows"] = ran ? row.run.trace.size() : 0;
+  const std::string not_written = WriteRecords(*problem, row.run, records, &json);
+  if (!not_written.empty()) return kCannotWrite + not_written;
   const std::string disagreement = Disagreement(direct, spec, row);
   json["disagreement"] = disagreement.empty() ? Json() : Json(disagreement);
   // Repetitions end alike, which is checked by their energies; one is polished.
@@ -278,6 +267,7 @@ Json FailedRow(const BenchSuite& suite, const BenchCell& cell, const ChildEnd& e
   json["calls_past_stop"] = 0;
   json["findings"] = {ToString(end.how)};
   json["trace_rows"] = 0;
+  json["iterate_rows"] = 0;
   json["disagreement"] = nullptr;
   return json;
 }

@@ -153,6 +153,10 @@ int CountExcluded(const BenchSuite& suite, const BenchExclusion& exclusion) {
   return count;
 }
 
+bool KeepsIterates(const BenchSuite& suite, const BenchCell& cell) {
+  return suite.keep_iterates > 0 && cell.repetition == 1;
+}
+
 std::string CellText(const BenchSuite& suite, const BenchCell& cell) {
   std::string text = suite.problems[cell.problem].label + " | " + suite.terms[cell.terms].label +
                      " | " + suite.solvers[cell.solver].ToString() + " | ";
@@ -177,6 +181,7 @@ std::string BenchCellKey(const BenchSuite& suite, const BenchCell& cell) {
   AddRule(suite, &text);
   text << SolverIdentity(suite.solvers[cell.solver]) << ' ' << suite.solvers[cell.solver].ToString()
        << ' ' << cell.seeds.solver << ' ' << cell.repetition;
+  if (KeepsIterates(suite, cell)) text << " iterates " << suite.keep_iterates;
   hash.Add(InstanceKey(suite, cell) + text.str());
   return hash.Digits();
 }
@@ -186,6 +191,7 @@ std::string SuiteHash(const BenchSuite& suite) {
   text << suite.name << ' ' << suite.repetitions << ' ' << suite.shuffled << suite.order_seed
        << ' ';
   for (const double gap : suite.gap_targets) text << NumberText(gap) << ' ';
+  text << suite.keep_iterates << ' ';
   AddRule(suite, &text);
   ContentHash hash;
   hash.Add(text.str());

@@ -29,6 +29,9 @@ std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, i
 /// How many cells an exclusion alone leaves out.
 int CountExcluded(const BenchSuite& suite, const BenchExclusion& exclusion);
 
+/// Repetitions walk the same way: one of them is drawn.
+bool KeepsIterates(const BenchSuite& suite, const BenchCell& cell);
+
 /// "rhino | own | lbfgs | data 1 start 2 seed 1 | repetition 3"
 std::string CellText(const BenchSuite& suite, const BenchCell& cell);
 

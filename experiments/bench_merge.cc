@@ -33,10 +33,13 @@ bool CopyFile(const std::string& from, const std::string& to, std::string* error
   return !failure;
 }
 
-/// Traces and logs before the rows, which say that they are there.
-bool CopyCellFiles(const BenchData& data, const std::string& key, const std::string& out,
+/// All that rows say is there before the rows themselves.
+bool CopyCellFiles(const BenchData& data, const nlohmann::json& row, const std::string& out,
                    std::string* error) {
-  for (const std::string& name : {"/traces/" + key + ".csv", "/logs/" + key + ".log"}) {
+  const std::string key = TextAt(row, "key");
+  for (const std::string& name :
+       {"/traces/" + key + ".csv", "/iterates/" + key + ".jsonl",
+        "/curves/" + TextAt(row, "instance") + ".json", "/logs/" + key + ".log"}) {
     if (!CopyFile(data.folder + name, out + name, error)) return false;
   }
   return true;
@@ -67,7 +70,7 @@ class Merger {
   explicit Merger(std::string out) : out_(std::move(out)) {}
 
   bool Open(std::string* error) {
-    for (const char* folder : {"", "/traces", "/logs"}) {
+    for (const char* folder : {"", "/traces", "/iterates", "/curves", "/logs"}) {
       if (!CreateDirectories(out_ + folder, error)) return false;
     }
     const auto Note = [](std::map<std::string, bool>* keys) {
@@ -91,7 +94,7 @@ class Merger {
         ++report->duplicates;
         continue;
       }
-      if (!CopyCellFiles(data, key, out_, error) || !cells_.Append(row.dump(), error)) return false;
+      if (!CopyCellFiles(data, row, out_, error) || !cells_.Append(row.dump(), error)) return false;
     }
     return true;
   }

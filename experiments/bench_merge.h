@@ -14,9 +14,9 @@ struct MergeReport {
 };
 
 /// Puts results of one suite and one program into the folder `out`, which is created if missing and
-/// keeps what it has: rows, instances, traces and logs. Of a cell that is there more than once the
-/// first row stays. False with one sentence in `error`, before anything is written, for folders of
-/// another suite or program.
+/// keeps what it has: rows, instances, traces, iterates and logs. Of a cell that is there more than
+/// once the first row stays. False with one sentence in `error`, before anything is written, for
+/// folders of another suite or program.
 bool MergeBenches(const std::string& out, const std::vector<std::string>& folders,
                   MergeReport* report, std::string* error);
 

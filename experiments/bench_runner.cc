@@ -7,8 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <limits>
 
 #include "experiments/atomic_file.h"
 #include "experiments/comparison_records.h"
@@ -22,17 +20,6 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The trace is there with all its rows: it may not have reached the disk when the machine went
-/// off.
-bool HasTrace(const nlohmann::json& row, const std::string& path) {
-  const auto rows = row.value("trace_rows", 0L);
-  if (rows == 0) return true;
-  std::ifstream file(path, std::ios::binary);
-  long lines = 0;
-  for (std::string line; std::getline(file, line) && !file.eof();) ++lines;
-  return lines == rows + 1;
-}
-
 }  // namespace
 
 BenchRunner::BenchRunner(const BenchSuite& suite, std::vector<BenchCell> cells, BenchFolder folder,
@@ -44,16 +31,21 @@ BenchRunner::BenchRunner(const BenchSuite& suite, std::vector<BenchCell> cells, 
   }
 }
 
+BenchRecords BenchRunner::RecordsOf(std::size_t cell) const {
+  return folder_.records(keys_[cell], InstanceKey(suite_, cells_[cell]));
+}
+
 void BenchRunner::TakeOver(const std::string& line) {
   nlohmann::json row = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
   if (!row.is_object() || !row.contains("key") || !row["key"].is_string()) return;
   const std::string key = row["key"];
-  if (wanted_.count(key) == 0 || !HasTrace(row, folder_.trace(key))) return;
+  const auto cell = wanted_.find(key);
+  if (cell == wanted_.end() || !HasRecords(row, RecordsOf(cell->second))) return;
   rows_[key] = std::move(row);
 }
 
 bool BenchRunner::Open(std::string* error) {
-  for (const char* name : {"traces", "logs"}) {
+  for (const char* name : {"traces", "iterates", "curves", "logs"}) {
     if (!CreateDirectories(folder_ / name, error)) return false;
   }
   const auto ReadInstance = [this](const std::string& line) {
@@ -139,7 +131,7 @@ bool BenchRunner::StartNext(std::vector<Running>* running, std::string* error) {
   started.cell = cell;
   started.process = ChildProcess::Start(
       LimitsOf(suite_), folder_.log(key),
-      [&] { return RunBenchCell(suite_, cells_[cell], folder_.trace(key)); }, error);
+      [&] { return RunBenchCell(suite_, cells_[cell], RecordsOf(cell)); }, error);
   if (started.process == nullptr) return false;
   running->push_back(std::move(started));
   return true;

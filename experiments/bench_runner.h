@@ -8,17 +8,10 @@
 #include <vector>
 
 #include "experiments/bench_cell.h"
+#include "experiments/bench_records.h"
 #include "experiments/bench_store.h"
 
 namespace batten {
-
-/// Names in the folder of a benchmark's results.
-struct BenchFolder {
-  std::string path;
-  std::string operator/(const std::string& name) const { return path + "/" + name; }
-  std::string trace(const std::string& key) const { return path + "/traces/" + key + ".csv"; }
-  std::string log(const std::string& key) const { return path + "/logs/" + key + ".log"; }
-};
 
 /// Runs the cells that are not finished yet, each in its own process, and keeps what is finished.
 class BenchRunner {
@@ -51,6 +44,7 @@ class BenchRunner {
     std::unique_ptr<ChildProcess> process;
   };
   void TakeOver(const std::string& line);
+  BenchRecords RecordsOf(std::size_t cell) const;
   bool MeasureInstances(const Progress& progress, std::string* error);
   bool MeasureOne(const BenchCell& cell, const std::string& key, std::string* error);
   bool StartNext(std::vector<Running>* running, std::string* error);

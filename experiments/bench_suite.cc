@@ -156,6 +156,13 @@ bool ReadSeeds(const StrictObject& file, BenchSuite* suite) {
          seeds.Integers("solver", kOptional, 0, kLargest, &suite->seeds.solver);
 }
 
+/// The first and the last are always among them.
+bool ReadKeptIterates(const StrictObject& file, BenchSuite* suite) {
+  constexpr int kMost = 1000;
+  return file.Integer("keep_iterates", kOptional, 0, kMost, &suite->keep_iterates) &&
+         (suite->keep_iterates != 1 || file.Refuse("keep_iterates", "0, or 2 to 1000"));
+}
+
 bool ReadOrder(const StrictObject& file, BenchSuite* suite) {
   StrictObject order;
   constexpr int kMostRepetitions = 1000;
@@ -211,15 +218,15 @@ bool ReadBenchSuite(const std::string& path, BenchSuite* suite, std::string* err
   std::string format;
   if (!file.HasOnly({"format", "name", "summary", "plugins", "problems", "terms", "solvers",
                      "exclude", "targets", "budgets", "rule", "seeds", "repetitions", "warm_up",
-                     "order"}) ||
+                     "order", "keep_iterates"}) ||
       !file.Word("format", kRequired, {"batten.suite/1"}, &format) ||
       !file.Text("name", kRequired, &read.name) ||
       !file.Text("summary", kOptional, &read.summary) || !ReadPlugins(file, path) ||
       !ReadProblems(file, &read, error) || !ReadTerms(file, &read) ||
       !ReadBenchSolvers(file, &read.solvers) || !ReadExclusions(file, &read) ||
       !ReadTargets(file, &read) || !ReadBudgets(file, &read) || !ReadRule(file, &read) ||
-      !ReadSeeds(file, &read) || !ReadOrder(file, &read) || !TryProblems(file, read) ||
-      !CheckExclusions(file, read)) {
+      !ReadSeeds(file, &read) || !ReadOrder(file, &read) || !ReadKeptIterates(file, &read) ||
+      !TryProblems(file, read) || !CheckExclusions(file, read)) {
     return false;
   }
   *suite = std::move(read);

@@ -70,7 +70,8 @@ struct BenchSuite {
   int repetitions = 3;
   bool shuffled = true;  // cells in random order
   int order_seed = 1;
-  int warm_up = 1;  // runs in a cell's process before the one that counts
+  int warm_up = 1;         // runs in a cell's process before the one that counts
+  int keep_iterates = 20;  // at most so many of each cell of repetition 1, or 0
 };
 
 /// Reads and checks all of a suite, its problems and data included: each problem is made once with

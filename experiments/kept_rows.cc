@@ -18,4 +18,17 @@ std::vector<std::size_t> KeptRows(std::size_t count, std::size_t most) {
   return kept;
 }
 
+std::size_t LeastMissed(const std::vector<double>& numbers) {
+  std::size_t least = 1;
+  double smallest = HUGE_VAL;
+  for (std::size_t k = 1; k + 1 < numbers.size(); ++k) {
+    const double ratio = (1.0 + numbers[k + 1]) / (1.0 + numbers[k - 1]);
+    if (ratio < smallest) {
+      smallest = ratio;
+      least = k;
+    }
+  }
+  return least;
+}
+
 }  // namespace batten

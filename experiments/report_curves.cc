@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "experiments/kept_rows.h"
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 struct IteratesFile {
   std::string key;
   std::string path;
-  std::string problem;
+  std::string curve;  // what it is drawn by
   std::size_t num_lines = 0;
   std::size_t numbers_each = 0;  // coordinates of one iterate
 };
@@ -27,24 +28,31 @@ struct ShownIterate {
   std::vector<std::vector<double>> points;
 };
 
-bool IsPoints(const OrderedJson& list) {
-  return list.is_array() && !list.empty() &&
-         std::all_of(list.begin(), list.end(), [&list](const OrderedJson& point) {
-           return point.is_array() && !point.empty() && point.size() == list[0].size() &&
-                  std::all_of(point.begin(), point.end(),
-                              [](const OrderedJson& x) { return x.is_number(); });
-         });
+/// `list` as points; null, as of a run that diverged, is NaN. Empty: it is none.
+std::vector<std::vector<double>> PointsOf(const OrderedJson& list) {
+  std::vector<std::vector<double>> points;
+  if (!list.is_array()) return {};
+  for (const OrderedJson& row : list) {
+    if (!row.is_array() || row.empty() || row.size() != list[0].size()) return {};
+    points.emplace_back();
+    for (const OrderedJson& x : row) {
+      if (!x.is_number() && !x.is_null()) return {};
+      points.back().push_back(x.is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                          : x.get<double>());
+    }
+  }
+  return points;
 }
 
 bool ParseIterate(std::string_view line, ShownIterate* iterate) {
   const OrderedJson json = OrderedJson::parse(line, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("iteration") || !json["iteration"].is_number() ||
-      !json.contains("control_points") || !IsPoints(json["control_points"])) {
+      !json.contains("control_points")) {
     return false;
   }
   iterate->iteration = json["iteration"].get<double>();
-  iterate->points = json["control_points"].get<std::vector<std::vector<double>>>();
-  return true;
+  iterate->points = PointsOf(json["control_points"]);
+  return !iterate->points.empty();
 }
 
 bool RefuseIterate(const IteratesFile& file, long number, std::string* error) {
@@ -103,7 +111,7 @@ void Measure(const ShownIterate& start, std::vector<double>* origin, double* siz
   if (*size == 0.0) *size = 1.0;
 }
 
-std::string RunJson(const std::vector<ShownIterate>& iterates, std::size_t num_lines) {
+std::string RunJson(const IteratesFile& file, const std::vector<ShownIterate>& iterates) {
   std::vector<double> origin;
   double size = 1.0;
   Measure(iterates[0], &origin, &size);
@@ -125,8 +133,9 @@ std::string RunJson(const std::vector<ShownIterate>& iterates, std::size_t num_l
     }
     points += "]";
   }
-  return "{\"origin\":" + OrderedJson(origin).dump() + ",\"unit\":" + OrderedJson(unit).dump() +
-         ",\"iterates\":" + std::to_string(num_lines) + ",\"iterations\":[" + iterations +
+  return "{\"curve\":" + OrderedJson(file.curve).dump() +
+         ",\"origin\":" + OrderedJson(origin).dump() + ",\"unit\":" + OrderedJson(unit).dump() +
+         ",\"iterates\":" + std::to_string(file.num_lines) + ",\"iterations\":[" + iterations +
          "],\"points\":[" + points + "]}";
 }
 
@@ -139,7 +148,7 @@ bool ReadSetting(const std::string& path, OrderedJson* setting, std::string* err
   const bool is_good =
       json.is_object() && json.contains("degree") && json["degree"].is_number_unsigned() &&
       json.contains("periodic") && json["periodic"].is_boolean() && json.contains("knots") &&
-      json["knots"].is_array() && json.contains("points") && IsPoints(json["points"]);
+      json["knots"].is_array() && json.contains("points") && !PointsOf(json["points"]).empty();
   if (!is_good) *error = path + ": found no spline; allowed: degree, periodic, knots, points";
   return is_good;
 }
@@ -160,29 +169,82 @@ void ThinPoints(OrderedJson* setting) {
   points = std::move(kept);
 }
 
+/// The splines and data points that runs are drawn by, alike ones once: instances of bench differ
+/// in terms and starts more often than in these.
+class Settings {
+ public:
+  explicit Settings(std::string folder) : folder_(std::move(folder)) {}
+
+  /// The name under which the first of `names` that has a file stands in all(); "" if none has.
+  /// False with one sentence in `error` for a broken file.
+  bool Find(const std::vector<std::string>& names, std::string* found, std::string* error) {
+    found->clear();
+    for (const std::string& name : names) {
+      const std::string path = (fs::path(folder_) / "curves" / (name + ".json")).string();
+      std::error_code ignored;
+      const bool is_name = !name.empty() && name.find('/') == std::string::npos;
+      if (!is_name || !fs::is_regular_file(path, ignored)) continue;
+      const auto [place, is_new] = known_.emplace(name, "");
+      if (is_new && !Read(path, name, &place->second, error)) return false;
+      *found = place->second;
+      return true;
+    }
+    return true;
+  }
+  const OrderedJson& all() const { return all_; }
+
+ private:
+  bool Read(const std::string& path, const std::string& name, std::string* found,
+            std::string* error) {
+    OrderedJson setting;
+    if (!ReadSetting(path, &setting, error)) return false;
+    ThinPoints(&setting);
+    *found = names_.emplace(setting.dump(), name).first->second;
+    if (*found == name) all_[name] = std::move(setting);
+    return true;
+  }
+
+  std::string folder_;
+  std::map<std::string, std::string> known_;  // by the file's name
+  std::map<std::string, std::string> names_;  // by contents
+  OrderedJson all_ = OrderedJson::object();
+};
+
+/// The files of the rows that have some iterates. Of bench those of an instance share what they
+/// are drawn by, of compare those of a problem.
+bool FindIterates(const std::string& folder, const std::vector<OrderedJson>& cells,
+                  Settings* settings, std::vector<IteratesFile>* files,
+                  std::vector<std::string>* notes, std::string* error) {
+  for (const OrderedJson& cell : cells) {
+    IteratesFile file;
+    file.key = TextField(cell, "key");
+    file.path = (fs::path(folder) / "iterates" / (file.key + ".jsonl")).string();
+    std::error_code ignored;
+    if (file.key.empty() || !fs::is_regular_file(file.path, ignored)) continue;
+    if (!LookThrough(&file, notes, error)) return false;
+    if (file.num_lines == 0) continue;
+    if (!settings->Find({TextField(cell, "instance"), TextField(cell, "problem")}, &file.curve,
+                        error)) {
+      return false;
+    }
+    files->push_back(std::move(file));
+  }
+  return true;
+}
+
 }  // namespace
 
 bool ReadReportCurves(const std::string& folder, const std::vector<OrderedJson>& cells,
                       const ReportLimits& limits, std::string* json,
                       std::vector<std::string>* notes, std::string* error) {
   std::vector<IteratesFile> files;
+  Settings settings(folder);
+  if (!FindIterates(folder, cells, &settings, &files, notes, error)) return false;
   std::size_t numbers_in_all = 0;
-  for (const OrderedJson& cell : cells) {
-    IteratesFile file;
-    file.key = TextField(cell, "key");
-    file.problem = TextField(cell, "problem");
-    file.path = (fs::path(folder) / "iterates" / (file.key + ".jsonl")).string();
-    std::error_code ignored;
-    if (file.key.empty() || !fs::is_regular_file(file.path, ignored)) continue;
-    if (!LookThrough(&file, notes, error)) return false;
-    if (file.num_lines == 0) continue;
-    numbers_in_all += file.numbers_each;
-    files.push_back(std::move(file));
-  }
+  for (const IteratesFile& file : files) numbers_in_all += file.numbers_each;
   const std::size_t most = std::clamp<std::size_t>(
       limits.curve_numbers / std::max<std::size_t>(1, numbers_in_all), 2, limits.iterates_per_run);
   std::string runs;
-  std::map<std::string, OrderedJson> settings;
   std::size_t numbers = 0, left_out = 0;
   for (const IteratesFile& file : files) {
     numbers += file.numbers_each * std::min(most, file.num_lines);
@@ -192,20 +254,12 @@ bool ReadReportCurves(const std::string& folder, const std::vector<OrderedJson>&
     }
     std::vector<ShownIterate> iterates;
     if (!ReadKept(file, most, &iterates, error)) return false;
-    runs += (runs.empty() ? "\"" : ",\"") + file.key + "\":" + RunJson(iterates, file.num_lines);
-    const std::string path = (fs::path(folder) / "curves" / (file.problem + ".json")).string();
-    std::error_code ignored;
-    const bool is_name = file.problem.find('/') == std::string::npos;
-    if (!is_name || settings.count(file.problem) > 0 || !fs::is_regular_file(path, ignored)) {
-      continue;
-    }
-    if (!ReadSetting(path, &settings[file.problem], error)) return false;
-    ThinPoints(&settings[file.problem]);
+    runs += (runs.empty() ? "\"" : ",\"") + file.key + "\":" + RunJson(file, iterates);
   }
   if (left_out > 0) {
     notes->push_back("iterates of " + std::to_string(left_out) + " runs are not in the page");
   }
-  *json = "{\"runs\":{" + runs + "},\"problems\":" + OrderedJson(settings).dump() + "}";
+  *json = "{\"runs\":{" + runs + "},\"problems\":" + settings.all().dump() + "}";
   return true;
 }
 

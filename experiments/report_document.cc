@@ -6,8 +6,10 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "experiments/build_info.h"
+#include "experiments/report_basins.h"
 #include "experiments/report_cells.h"
 #include "experiments/report_curves.h"
 #include "experiments/report_tables.h"
@@ -23,12 +25,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The instances that rows belong to, each with the E that its runs are held against.
 struct Group {
-  OrderedJson names;          // problem, terms, data seed
+  OrderedJson names;          // problem, terms, seeds of data and start
   double direct = kInfinity;  // lowest E* of a direct answer
+  double best = kInfinity;    // of bench: E of the best basin
   double lowest = kInfinity;  // lowest E that a run has seen
 
   bool is_direct() const { return std::isfinite(direct); }
-  double minimum() const { return is_direct() ? direct : lowest; }
+  bool has_basins() const { return !is_direct() && std::isfinite(best); }
+  double minimum() const { return is_direct() ? direct : has_basins() ? best : lowest; }
 };
 
 /// What one reading of a folder holds.
@@ -47,10 +51,12 @@ class FolderReader {
     std::error_code ignored;
     return fs::is_regular_file(InFolder(name), ignored);
   }
+  bool IsBench() const { return Has("instances.jsonl"); }
   bool ReadTraces(std::string* error);
   void FindGroups();
   bool ReadLogs(std::string* error);
   bool ReadManifest(std::string* error);
+  bool ReadBenchNotes(std::string* error);
   bool TracesJson(std::string* json, std::string* error);
 
   const std::string folder_;
@@ -58,10 +64,12 @@ class FolderReader {
   std::vector<std::string> notes_;
   std::vector<OrderedJson> cells_;
   std::vector<ReportTrace> traces_;  // one per cell, without rows where there is none
+  BasinMinima basins_;
   std::vector<Group> groups_;
   std::vector<std::size_t> group_of_;  // of each cell
   OrderedJson logs_ = OrderedJson::object();
   OrderedJson manifest_;
+  OrderedJson bench_notes_ = OrderedJson::array();
 };
 
 std::string Joined(const std::vector<std::string>& words) {
@@ -96,7 +104,7 @@ void FolderReader::FindGroups() {
   for (std::size_t k = 0; k < cells_.size(); ++k) {
     const OrderedJson& cell = cells_[k];
     OrderedJson names = OrderedJson::object();
-    for (const char* field : {"problem", "terms", "data_seed"}) {
+    for (const char* field : {"problem", "terms", "data_seed", "start_seed"}) {
       if (cell.contains(field)) names[field] = cell[field];
     }
     const std::size_t place = places.emplace(names.dump(), groups_.size()).first->second;
@@ -108,6 +116,8 @@ void FolderReader::FindGroups() {
     Group& group = groups_[place];
     const double direct = NumberField(cell, "minimum_energy");
     if (std::isfinite(direct)) group.direct = std::min(group.direct, direct);
+    const auto basin = basins_.best.find(TextField(cell, "key"));
+    if (basin != basins_.best.end()) group.best = std::min(group.best, basin->second);
     const double energy = NumberField(cell, "energy");
     if (std::isfinite(energy)) group.lowest = std::min(group.lowest, energy);
     for (const ReportTrace::Row& row : traces_[k].rows) {
@@ -151,8 +161,21 @@ bool FolderReader::ReadManifest(std::string* error) {
   return false;
 }
 
+/// The paragraphs and points of what `bench` says about its results.
+bool FolderReader::ReadBenchNotes(std::string* error) {
+  if (!IsBench() || !Has("notes.md")) return true;
+  std::string text;
+  if (!ReadWholeFile(InFolder("notes.md"), &text, error)) return false;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty() && line.front() != '#') bench_notes_.push_back(line);
+  }
+  return true;
+}
+
 /// {KEY: [rows in the file, iterations, evaluations, seconds, processor seconds, E - E*, |g|,
-/// TargetHits]}. E* is taken off here, where E has all its digits.
+/// TargetHits, and the same to the run's own basin where it is known]}. E* is taken off here, where
+/// E has all its digits.
 bool FolderReader::TracesJson(std::string* json, std::string* error) {
   using Row = ReportTrace::Row;
   constexpr double Row::*kColumns[] = {&Row::iteration,   &Row::evaluations, &Row::seconds,
@@ -181,7 +204,11 @@ bool FolderReader::TracesJson(std::string* json, std::string* error) {
                          error)) {
       return false;
     }
-    text += ',' + TargetHits(whole.rows.empty() ? trace.rows : whole.rows, minimum) + ']';
+    const std::vector<Row>& rows = whole.rows.empty() ? trace.rows : whole.rows;
+    text += ',' + TargetHits(rows, minimum);
+    const auto own = basins_.own.find(key);
+    if (own != basins_.own.end()) text += ',' + TargetHits(rows, own->second);
+    text += ']';
   }
   *json = text + "}";
   return true;
@@ -190,12 +217,13 @@ bool FolderReader::TracesJson(std::string* json, std::string* error) {
 bool FolderReader::Read(ReportDocument* document, std::string* error) {
   const bool has_cells = Has("cells.jsonl");
   if (has_cells && !ReadCells(InFolder("cells.jsonl"), &cells_, &notes_, error)) return false;
-  if (!ReadTraces(error) || !ReadLogs(error) || !ReadManifest(error)) return false;
+  if (!ReadTraces(error) || !ReadLogs(error) || !ReadManifest(error) || !ReadBenchNotes(error))
+    return false;
+  if (IsBench()) basins_ = ReadBasinMinima(folder_);
   FindGroups();
   OrderedJson tables, pictures, pages;
   // Of compare the rows of cells.jsonl once more; that of bench has basins and costs beside them.
-  const bool is_bench = std::filesystem::exists(folder_ + "/instances.jsonl");
-  const std::vector<std::string> skipped(has_cells && !is_bench ? 1 : 0, "table.csv");
+  const std::vector<std::string> skipped(has_cells && !IsBench() ? 1 : 0, "table.csv");
   if (!ReadReportTables(folder_, skipped, limits_, &tables, &notes_, error) ||
       !ReadReportPictures(folder_, limits_, &pictures, &notes_, error) ||
       !ReadReproductionPages(folder_, &pages, error) ||
@@ -213,6 +241,7 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
     OrderedJson shown = group.names;
     shown["minimum"] = std::isfinite(group.minimum()) ? OrderedJson(group.minimum()) : nullptr;
     shown["direct"] = group.is_direct();
+    shown["basins"] = group.has_basins();
     groups.push_back(std::move(shown));
   }
   std::error_code ignored;
@@ -229,6 +258,7 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
                          {"pictures", std::move(pictures)},
                          {"logs", logs_},
                          {"manifest", manifest_},
+                         {"bench_notes", bench_notes_},
                          {"notes", notes_}};
   // Logs and tables may hold anything: bad UTF-8 is replaced, not thrown at.
   document->summary = summary.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);

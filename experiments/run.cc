@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "experiments/run_control.h"
+#include "experiments/sparse_run.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -45,21 +46,10 @@ class Watched final : public EvaluationMonitor {
   const EvaluationWatch& watch_;
 };
 
-}  // namespace
-
-const char* ToString(Mode mode) { return mode == Mode::kRace ? "race" : "native"; }
-
-bool FromString(const std::string& text, Mode* mode) {
-  if (text != "race" && text != "native") return false;
-  *mode = text == "race" ? Mode::kRace : Mode::kNative;
-  return true;
-}
-
-void RequestInterrupt() { interrupt_requested = true; }
-bool InterruptRequested() { return interrupt_requested; }
-
-bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
-         RunResult* result, std::string* error, const EvaluationWatch& watch) {
+/// `most_iterates`: 0 for what `spec` says.
+bool RunWatched(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
+                std::size_t most_iterates, RunResult* result, std::string* error,
+                const EvaluationWatch& watch) {
   *result = RunResult();
   result->solver = solver_name;
   OptionValues options;
@@ -69,6 +59,7 @@ bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spe
   result->options = options.ToText();
 
   RunControl control(problem, spec, solver->Info().native_rule, result);
+  if (most_iterates > 0) control.KeepAtMost(most_iterates);
   Watched watched(&control, watch);
   EvaluationMonitor* const monitor = watch ? static_cast<EvaluationMonitor*>(&watched) : &control;
   // Made before the clock starts: nothing in it is evaluated or compiled before the solver asks.
@@ -82,6 +73,29 @@ bool Run(const Problem& problem, const NameSpec& solver_name, const RunSpec& spe
   control.Finish(x);
   result->observed_rate = ObservedRate(*result);
   return true;
+}
+
+}  // namespace
+
+const char* ToString(Mode mode) { return mode == Mode::kRace ? "race" : "native"; }
+
+bool FromString(const std::string& text, Mode* mode) {
+  if (text != "race" && text != "native") return false;
+  *mode = text == "race" ? Mode::kRace : Mode::kNative;
+  return true;
+}
+
+void RequestInterrupt() { interrupt_requested = true; }
+bool InterruptRequested() { return interrupt_requested; }
+
+bool Run(const Problem& problem, const NameSpec& solver, const RunSpec& spec, RunResult* result,
+         std::string* error, const EvaluationWatch& watch) {
+  return RunWatched(problem, solver, spec, 0, result, error, watch);
+}
+
+bool RunKeepingSome(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
+                    std::size_t most, RunResult* result, std::string* error) {
+  return RunWatched(problem, solver, spec, most, result, error, nullptr);
 }
 
 }  // namespace batten

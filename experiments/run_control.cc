@@ -6,6 +6,7 @@
 #include <ctime>
 #include <limits>
 
+#include "experiments/kept_rows.h"
 #include "problems/constraint_projection.h"
 #include "problems/fit_problem.h"
 
@@ -158,8 +159,17 @@ void RunControl::Book(const Eigen::VectorXd& x) {
   }
   last_x_ = x;
   if (spec_.keep_trace) result_->trace.push_back(row_);
-  if (spec_.keep_iterates) result_->iterates.push_back({iteration_, reporter_.Expand(x)});
+  if (spec_.keep_iterates || most_iterates_ > 0) KeepIterate(x);
   if (spec_.progress) spec_.progress(row_);
+}
+
+void RunControl::KeepIterate(const Eigen::VectorXd& x) {
+  auto& kept = result_->iterates;
+  kept.push_back({iteration_, reporter_.Expand(x)});
+  if (most_iterates_ == 0 || kept.size() <= most_iterates_) return;
+  std::vector<double> iterations;
+  for (const auto& iterate : kept) iterations.push_back(iterate.iteration);
+  kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(LeastMissed(iterations)));
 }
 
 double RunControl::StepNorm(const Eigen::VectorXd& x) const {

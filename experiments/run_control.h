@@ -34,6 +34,8 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   /// `problem` and `result` must outlive this; `rule` is the solver's native one.
   RunControl(const Problem& problem, const RunSpec& spec, NativeRule rule, RunResult* result);
 
+  /// Of the iterates, whatever `spec` says; >= 2.
+  void KeepAtMost(std::size_t most) { most_iterates_ = most; }
   void Begin() { watch_.Resume(); }
   /// Stops the clocks and writes, beside the outcome that is in the result already, counts, times
   /// and the end's energy and gradient to the result.
@@ -49,6 +51,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
 
  private:
   void Book(const Eigen::VectorXd& x);
+  void KeepIterate(const Eigen::VectorXd& x);
   StopReason CheckStop(const TraceRow& row);
   StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
   StopReason CheckLimit() const;
@@ -74,6 +77,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   TraceRow row_;
   bool is_held_ = true;  // nonlinear constraints, at the last iterate
   int iteration_ = -1;
+  std::size_t most_iterates_ = 0;  // 0: all or none, as `spec_` says
 };
 
 }  // namespace batten

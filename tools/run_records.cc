@@ -1,9 +1,9 @@
 #include "tools/run_records.h"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "experiments/curve_records.h"
 #include "experiments/fit_report.h"
 #include "problems/fit_problem.h"
 #include "tools/comparison_cells.h"
@@ -15,23 +15,6 @@ namespace fs = std::filesystem;
 
 std::string Path(const std::string& folder, const char* kind, const std::string& file) {
   return (fs::path(folder) / kind / file).string();
-}
-
-/// The same for all runs on a problem; data points as far as a picture shows them.
-std::string CurveJson(const CurveFit& fit) {
-  constexpr Eigen::Index kMostPoints = 1000;
-  const Points& data = fit.data().points;
-  const Eigen::Index step = (data.rows() + kMostPoints - 1) / kMostPoints;
-  nlohmann::ordered_json points = nlohmann::ordered_json::array();
-  for (Eigen::Index i = 0; i < data.rows(); i += step) {
-    points.push_back(
-        std::vector<double>(data.data() + i * data.cols(), data.data() + (i + 1) * data.cols()));
-  }
-  const nlohmann::ordered_json json = {
-      {"format", "batten.curve/1"},         {"degree", fit.basis().degree()},
-      {"periodic", fit.basis().periodic()}, {"knots", fit.basis().knots()},
-      {"num_points", data.rows()},          {"points", std::move(points)}};
-  return json.dump() + "\n";
 }
 
 /// The folders of the records.

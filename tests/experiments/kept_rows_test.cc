@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace batten {
@@ -35,6 +36,32 @@ TEST(KeptRows, IncreaseFromTheFirstToTheLast) {
         EXPECT_LT(kept[j - 1], kept[j]) << count << ' ' << most;
       }
     }
+  }
+}
+
+TEST(LeastMissed, IsTheOneWhoseNeighboursAreNearestInRatio) {
+  // Ratios: (1 + 3) / 1, (1 + 7) / 2, (1 + 8) / 4, so that 7 goes.
+  EXPECT_EQ(LeastMissed({0, 1, 3, 7, 8}), 3u);
+  EXPECT_EQ(LeastMissed({0, 1, 2}), 1u);
+  // Ratios: 3, 3, 2, though all three gaps of the last four are 3.
+  EXPECT_EQ(LeastMissed({1, 2, 5, 8, 11}), 3u);
+}
+
+TEST(LeastMissed, LeavesARunSpreadGeometrically) {
+  constexpr std::size_t kMost = 20;
+  std::vector<double> kept;
+  for (int k = 0; k <= 10'000; ++k) {
+    kept.push_back(k);
+    if (kept.size() > kMost) kept.erase(kept.begin() + static_cast<long>(LeastMissed(kept)));
+    ASSERT_EQ(kept.front(), 0);
+    ASSERT_EQ(kept.back(), k);
+  }
+  ASSERT_EQ(kept.size(), kMost);
+  // Without rounding to whole numbers all ratios of neighbours would be 10001^(1 / 19) = 1.62.
+  const double square = std::pow(10'001.0, 2.0 / (kMost - 1));
+  for (std::size_t k = 1; k < kept.size(); ++k) {
+    EXPECT_LT(kept[k - 1], kept[k]);
+    EXPECT_LT((1.0 + kept[k]) / (1.0 + kept[k - 1]), square) << k;
   }
 }
 

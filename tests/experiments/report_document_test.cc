@@ -138,6 +138,32 @@ TEST_F(ReportDocumentTest, HoldsRunsAgainstTheLowestEnergyWhereThereIsNoDirectAn
   EXPECT_EQ(Traces()["a"][6], json::parse("[null, null]"));  // no column of |g|
 }
 
+// Other starts lead to other minima: each has an E* of its own.
+TEST_F(ReportDocumentTest, HoldsRunsFromOneStartAgainstEachOtherAlone) {
+  Write("cells.jsonl",
+        "{\"problem\": \"p\", \"start_seed\": 1, \"energy\": 4}\n"
+        "{\"problem\": \"p\", \"start_seed\": 2, \"energy\": 3}\n"
+        "{\"problem\": \"p\", \"start_seed\": 1, \"energy\": 5}\n");
+  ASSERT_TRUE(Read()) << error_;
+  const json groups = Summary()["groups"];
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0]["start_seed"], 1);
+  EXPECT_EQ(groups[0]["minimum"], 4.0);
+  EXPECT_EQ(groups[1]["minimum"], 3.0);
+  EXPECT_EQ(Summary()["group_of"], json::parse("[0, 1, 0]"));
+}
+
+TEST_F(ReportDocumentTest, HasTheNotesOfABenchmarkAlone) {
+  Write("cells.jsonl", "{\"problem\": \"p\"}\n");
+  Write("notes.md", "# small\n\nAll is finished.\n\n- a | own: cg: diverged\n");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_TRUE(Summary()["bench_notes"].empty());
+  Write("instances.jsonl", "{}\n");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["bench_notes"],
+            json::parse("[\"All is finished.\", \"- a | own: cg: diverged\"]"));
+}
+
 TEST_F(ReportDocumentTest, ASkippedRunBelongsToTheProblemAsTheOthersRanIt) {
   Write("cells.jsonl",
         "{\"problem\": \"p\", \"stop\": \"skipped\"}\n{\"key\": \"a\", \"problem\": \"p\"}\n");
@@ -166,17 +192,47 @@ TEST_F(ReportDocumentTest, RoundsControlPointsToTheSizeOfTheStart) {
   Write("cells.jsonl", "{\"key\": \"a\", \"problem\": \"p\"}\n");
   Write("iterates/a.jsonl",
         "{\"iteration\": 0, \"control_points\": [[1, 2], [3, 2], [3, 3]]}\n"
-        "{\"iteration\": 1, \"control_points\": [[1.5, 2.00011], [3, 2], [-1, 1e300]]}\n");
+        "{\"iteration\": 1, \"control_points\": [[1.5, 2.00011], [3, 2], [-1, 1e300]]}\n"
+        "{\"iteration\": 2, \"control_points\": [[1, 2], [3, 2], [null, 3]]}\n");
   Write("curves/p.json",
         "{\"degree\": 1, \"periodic\": false, \"knots\": [0, 0, 1, 2, 2], \"points\": [[1, 2]]}");
   ASSERT_TRUE(Read()) << error_;
   const json run = Curves()["runs"]["a"];
   EXPECT_EQ(run["origin"], json::parse("[1, 2]"));
   EXPECT_EQ(run["unit"], 2e-4);
-  EXPECT_EQ(run["iterations"], json::parse("[0, 1]"));
+  EXPECT_EQ(run["iterations"], json::parse("[0, 1, 2]"));
   EXPECT_EQ(run["points"][0], json::parse("[0, 0, 10000, 0, 10000, 5000]"));
   EXPECT_EQ(run["points"][1], json::parse("[2500, 1, 10000, 0, -10000, null]"));
+  EXPECT_EQ(run["points"][2], json::parse("[0, 0, 10000, 0, null, 5000]"));
+  EXPECT_EQ(run["curve"], "p");
   EXPECT_EQ(Curves()["problems"]["p"]["degree"], 1);
+}
+
+TEST_F(ReportDocumentTest, DrawsRunsOfBenchByTheirInstancesAlikeOnesOnce) {
+  Write("cells.jsonl",
+        "{\"key\": \"a\", \"problem\": \"p/kind=free\", \"instance\": \"1\"}\n"
+        "{\"key\": \"b\", \"problem\": \"p/kind=free\", \"instance\": \"2\"}\n"
+        "{\"key\": \"c\", \"problem\": \"p/kind=free\", \"instance\": \"3\"}\n"
+        "{\"key\": \"d\", \"problem\": \"p/kind=free\", \"instance\": \"4\"}\n");
+  for (const char* key : {"a", "b", "c", "d"}) {
+    Write(std::string("iterates/") + key + ".jsonl",
+          "{\"iteration\": 0, \"control_points\": [[1, 2], [3, 2], [3, 3]]}\n");
+  }
+  const auto curve = [](const char* point) {
+    return std::string("{\"degree\": 1, \"periodic\": false, \"knots\": [0, 0, 1, 2, 2], ") +
+           "\"points\": [" + point + "]}";
+  };
+  Write("curves/1.json", curve("[1, 2]"));
+  Write("curves/2.json", curve("[1, 2]"));
+  Write("curves/3.json", curve("[5, 6]"));
+  ASSERT_TRUE(Read()) << error_;
+  const json curves = Curves();
+  EXPECT_EQ(curves["runs"]["a"]["curve"], "1");
+  EXPECT_EQ(curves["runs"]["b"]["curve"], "1");
+  EXPECT_EQ(curves["runs"]["c"]["curve"], "3");
+  EXPECT_EQ(curves["runs"]["d"]["curve"], "");  // none there: its control polygon alone
+  EXPECT_EQ(curves["problems"].size(), 2u);
+  EXPECT_EQ(curves["problems"]["3"]["points"], json::parse("[[5, 6]]"));
 }
 
 TEST_F(ReportDocumentTest, NamesTheLineOfABrokenIterate) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/sparse_run.h"
 #include "tests/experiments/outlines.h"
 
 namespace batten {
@@ -97,6 +98,29 @@ TEST(Run, TracesEveryIterationInTheUsersUnits) {
   EXPECT_EQ(result.trace.back().energy, result.energy);
   EXPECT_EQ(result.trace.front().energy, result.start_energy);
   EXPECT_EQ(result.trace.back().gradient_norm, result.gradient_norm);
+}
+
+TEST(RunKeepingSome, HoldsIteratesOfTheWholeRunAndChangesNothingElse) {
+  const auto problem = LoadCatalogueProblem("cat");
+  RunSpec spec;
+  spec.keep_iterates = true;
+  const RunResult whole = RunSolver(*problem, "lspia", spec);
+  ASSERT_GT(whole.iterations, 50);
+  NameSpec solver;
+  solver.name = "lspia";
+  RunResult some;
+  std::string error;
+  ASSERT_TRUE(RunKeepingSome(*problem, solver, RunSpec(), 9, &some, &error)) << error;
+  EXPECT_EQ(some.x, whole.x);
+  EXPECT_EQ(some.stream_hash, whole.stream_hash);
+  ASSERT_EQ(some.iterates.size(), 9u);
+  EXPECT_EQ(some.iterates.front().iteration, 0);
+  EXPECT_EQ(some.iterates.back().iteration, whole.iterations);
+  for (const Iterate& iterate : some.iterates) {
+    EXPECT_EQ(iterate.x, whole.iterates[static_cast<std::size_t>(iterate.iteration)].x);
+  }
+  ASSERT_TRUE(RunKeepingSome(*problem, solver, RunSpec(), 0, &some, &error)) << error;
+  EXPECT_TRUE(some.iterates.empty());
 }
 
 TEST(Run, CountsNeverFallAndEndAsInTheResult) {

@@ -31,7 +31,8 @@ TEST_P(EverySolver, GivesTheSameBitsWithAnyNumberOfThreadsUnderConstraints) {
     const bool is_fixed = fit.spec.parameter_kind == ParameterKind::kFixed;
     // All coordinates alike, one alone, and two control points tied to each other.
     const int d = problem->curve_fit()->dimension();
-    SetConstraints({HoldCurve(*problem, 0.1, 0, 0.3), HoldCurve(*problem, 0.1, 1, 0.02),
+    SetConstraints({HoldCurve(*problem, 0.1, 0, 0.3),
+                    HoldCurve(*problem, 0.1, 1, 0.02),
                     HoldCurve(*problem, 0.6, 1, -0.1),
                     {"tied", {{8 * d, 1.0}, {9 * d, -1.0}}, 0.05}},
                    problem.get());

@@ -3,9 +3,11 @@
 
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <random>
 #include <set>
 
+#include "tests/tools/page_text.h"
 #include "tests/tools/program.h"
 
 namespace batten {
@@ -61,6 +63,23 @@ class Bench : public ::testing::Test {
     return keys;
   }
 
+  /// Iterates by run: first repetitions alone have some, whose number the row says.
+  std::map<std::string, std::string> Iterates(const std::string& out) const {
+    std::map<std::string, std::string> iterates;
+    for (const std::string& line : Lines(ReadFile(folder_ / (out + "/cells.jsonl")))) {
+      const json row = json::parse(line);
+      const std::string key = row["key"].get<std::string>();
+      const std::string path = folder_ / (out + "/iterates/" + key + ".jsonl");
+      EXPECT_EQ(std::filesystem::exists(path), row["iterate_rows"] > 0);
+      if (row["iterate_rows"] == 0) continue;
+      iterates[key] = ReadFile(path);
+      EXPECT_EQ(Lines(iterates[key]).size(), row["iterate_rows"].get<std::size_t>());
+      EXPECT_TRUE(std::filesystem::exists(
+          folder_ / (out + "/curves/" + row["instance"].get<std::string>() + ".json")));
+    }
+    return iterates;
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -94,10 +113,80 @@ TEST_F(Bench, KilledAtRandomTimesEndsWithTheSameTable) {
   const Ended ended = RunIn(suite, "killed");
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(TimelessTable("killed"), TimelessTable("undisturbed"));
+  EXPECT_EQ(Iterates("killed"), Iterates("undisturbed"));
   EXPECT_EQ(Keys("killed"), Keys("undisturbed"));
   const auto keys = Keys("killed");
   EXPECT_EQ(keys.size(), 60u);
   EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()).size(), 60u);
+}
+
+TEST_F(Bench, KeepsSomeIteratesOfTheFirstRepetition) {
+  json suite = GoodSuite();
+  suite["repetitions"] = 2;
+  suite["keep_iterates"] = 7;
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  for (const std::string& line : Lines(ReadFile(folder_ / "out/cells.jsonl"))) {
+    const json row = json::parse(line);
+    if (row["repetition"] == 2) {
+      EXPECT_EQ(row["iterate_rows"], 0);
+      continue;
+    }
+    // All of a short run, 7 of a longer one, from the start to the end of it.
+    const int iterations = row["iterations"].get<int>();
+    EXPECT_EQ(row["iterate_rows"], std::min(7, iterations + 1));
+    const std::vector<std::string> lines = Lines(Iterates("out").at(row["key"].get<std::string>()));
+    EXPECT_EQ(json::parse(lines.front())["iteration"], 0);
+    EXPECT_EQ(json::parse(lines.back())["iteration"], iterations);
+    const std::size_t n = row["problem"] == "wave"                     ? 9
+                          : row["problem"] == "star/control_points=12" ? 12
+                                                                       : 8;
+    for (const std::string& iterate : lines) {
+      EXPECT_EQ(json::parse(iterate)["control_points"].size(), n);
+    }
+  }
+  suite["keep_iterates"] = 0;
+  ASSERT_EQ(RunIn(Suite(suite), "none").status, 0);
+  EXPECT_TRUE(Iterates("none").empty());
+}
+
+TEST_F(Bench, RunsAgainWhatHasLostItsIterates) {
+  const std::string suite = Suite(GoodSuite());
+  ASSERT_EQ(RunIn(suite, "out").status, 0);
+  const auto iterates = Iterates("out");
+  ASSERT_EQ(iterates.size(), 15u);  // 3 problems x 5 solvers
+  const auto [lost, torn] = std::pair(iterates.begin()->first, std::next(iterates.begin())->first);
+  const std::string lost_file = folder_ / ("out/iterates/" + lost + ".jsonl");
+  const std::string torn_file = folder_ / ("out/iterates/" + torn + ".jsonl");
+  std::filesystem::remove(lost_file);
+  std::filesystem::resize_file(torn_file, std::filesystem::file_size(torn_file) - 3);
+  ASSERT_EQ(RunIn(suite, "out").status, 0);
+  EXPECT_EQ(ReadFile(lost_file), iterates.at(lost));
+  EXPECT_EQ(ReadFile(torn_file), iterates.at(torn));
+  // The two cells that ran again, and no other, have a second row.
+  const auto keys = Keys("out");
+  EXPECT_EQ(keys.size(), 62u);
+  EXPECT_EQ(keys.count(lost), 2u);
+  EXPECT_EQ(keys.count(torn), 2u);
+}
+
+TEST_F(Bench, ThePageHasAPlayerOfEachInstance) {
+  json suite = GoodSuite();
+  suite["repetitions"] = 2;
+  suite["terms"] = {"distance", "distance,fairing/weight=1e-4"};
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  ASSERT_EQ(RunBatten({"report", folder_ / "out"}).status, 0);
+  const std::string page = ReadFile(folder_ / "out/report.html");
+  const json curves = json::parse(ScriptText(page, "curves-data"));
+  EXPECT_EQ(curves["runs"].size(), 30u);  // 3 problems x 2 terms x 5 solvers, once
+  for (const json& run : curves["runs"]) {
+    ASSERT_TRUE(curves["problems"].contains(run["curve"].get<std::string>()));
+    EXPECT_LE(run["points"].size(), 20u);
+  }
+  // Terms do not change what curves are drawn by.
+  EXPECT_EQ(curves["problems"].size(), 3u);
+  const json summary = json::parse(ScriptText(page, "summary-data"));
+  EXPECT_THAT(summary["bench_notes"][0].get<std::string>(),
+              HasSubstr("60 of 60 cells are finished."));
 }
 
 TEST_F(Bench, CutsATornLastLine) {
@@ -164,6 +253,7 @@ TEST_F(Bench, PartsMergeToTheWhole) {
     ASSERT_EQ(manifest["sessions"].size(), 2u);
     EXPECT_EQ(manifest["sessions"][0]["shard"], "1/2");
     EXPECT_EQ(manifest["sessions"][1]["shard"], "2/2");
+    EXPECT_EQ(Iterates("merged"), Iterates("whole"));
   }
 }
 
@@ -405,6 +495,9 @@ INSTANTIATE_TEST_SUITE_P(
                    (*s)["budgets"] = {{"second", 1}};
                  },
                  {"/budgets", "did you mean seconds?"}},
+        BadSuite{"OneIterate",
+                 [](json* s) { (*s)["keep_iterates"] = 1; },
+                 {"/keep_iterates: found 1; allowed: 0, or 2 to 1000"}},
         BadSuite{"Target",
                  [](json* s) {
                    (*s)["targets"] = {{"gaps", {0.1, 2}}};

@@ -1,6 +1,7 @@
 // The command `report`, run as a process; what the page does is tried by tests/report/run.sh.
 #include <gmock/gmock.h>
 
+#include "tests/tools/page_text.h"
 #include "tests/tools/program.h"
 
 namespace batten {
@@ -8,13 +9,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-/// What stands in the <script> element `id`.
-std::string ScriptText(const std::string& page, const std::string& id) {
-  const std::string open = "<script type=\"application/json\" id=\"" + id + "\">";
-  const std::size_t begin = page.find(open) + open.size();
-  return page.substr(begin, page.find("</script>", begin) - begin);
-}
 
 std::size_t Count(const std::string& text, const std::string& part) {
   std::size_t count = 0;

@@ -4,6 +4,12 @@ function addFolderSections() {
   const pictures = new Map(doc.pictures.map(picture => [picture.name, picture]));
   const tables = new Map(doc.tables.map(table => [table.name, table]));
   for (const page of doc.pages) addPage(page, pictures, tables);
+  if (doc.bench_notes.length > 0) {
+    const points = doc.bench_notes.filter(line => line.startsWith('- '));
+    addSection('Notes of the benchmark', element('div', {},
+      ...doc.bench_notes.filter(line => !line.startsWith('- ')).map(line => element('p', {}, line)),
+      element('ul', {}, ...points.map(line => element('li', {}, line.slice(2))))));
+  }
   if (pictures.size > 0) {
     addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
       pictureOf(picture, `As drawn when the folder was written; what is plotted stands in ` +

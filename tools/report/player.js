@@ -45,8 +45,11 @@ function curvePoints(setting, points) {
   return sampled;
 }
 
-function playerRows(row, iteration, setting, hasPolygon) {
-  const run = curves().runs[row.key];
+// The spline and the data points of a run; undefined where the folder has no curves/NAME.json.
+const settingOf = row => curves().problems[curves().runs[row.key].curve];
+
+function playerRows(row, iteration, hasPolygon) {
+  const run = curves().runs[row.key], setting = settingOf(row);
   const k = iterateAt(run, iteration);
   const control = controlPoints(run, k);
   const panel = row.panel, at = run.iterations[k];
@@ -178,15 +181,13 @@ class Player {
     });
   }
   rows() {
-    const setting = curves().problems[doc.groups[this.state.group].problem];
-    return this.panels().flatMap(row =>
-      playerRows(row, this.state.iteration, setting, this.state.polygon));
+    return this.panels().flatMap(row => playerRows(row, this.state.iteration, this.state.polygon));
   }
   build(width) {
     const all = this.runs(), panels = this.panels();
-    const setting = curves().problems[doc.groups[this.state.group].problem];
+    const setting = panels.length > 0 ? settingOf(panels[0]) : undefined;
     const caption = (setting ? 'Curve and data points (dots)' : 'Control polygon (the folder has no ' +
-      'curves/PROBLEM.json to draw the curve by)') +
+      'curves/NAME.json to draw the curve by)') +
       ' of each run at the chosen iteration, or at the last one before it that the page has; a run ' +
       'that has ended stays at its end. Coordinates are rounded to 1e-4 of the size of the start. ' +
       (setting && setting.num_points > setting.points.length
@@ -214,7 +215,7 @@ function addPlayer() {
   const groups = [...new Set(rows.filter(row => row.key in curves().runs).map(row => row.group))];
   if (groups.length === 0) {
     addSection('Player', element('p', {}, 'The folder has no iterates (iterates/KEY.jsonl); batten ' +
-      'compare keeps them with --keep_iterates=40.'));
+      'compare keeps them with --keep_iterates=40, batten bench unless "keep_iterates" of its suite is 0.'));
     return;
   }
   const player = new Player(groups);

@@ -1,0 +1,77 @@
+#include "experiments/bench_records.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "experiments/atomic_file.h"
+#include "experiments/curve_records.h"
+#include "experiments/fit_report.h"
+
+namespace batten {
+namespace {
+
+/// Empty, or the file and why it cannot be written; then nothing is left of it.
+std::string WriteFile(const std::string& path, const std::string& text) {
+  errno = 0;
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.close();
+  if (!file.fail()) return "";
+  const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+  std::remove(path.c_str());
+  return path + why;
+}
+
+/// Lines that have their end.
+long CountLines(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  long lines = 0;
+  for (std::string line; std::getline(file, line) && !file.eof();) ++lines;
+  return lines;
+}
+
+bool IsThere(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+}  // namespace
+
+bool FitsIterates(const Problem& problem, int most) {
+  constexpr int kMostNumbers = 20'000;
+  constexpr double kMostBytes = 32.0 * 1024 * 1024;
+  const CurveFit* const fit = problem.curve_fit();
+  return fit != nullptr && fit->basis().num_control_points() * fit->dimension() <= kMostNumbers &&
+         1.0 * most * problem.num_variables() * sizeof(double) <= kMostBytes;
+}
+
+std::string WriteRecords(const Problem& problem, const RunResult& run, const BenchRecords& records,
+                         nlohmann::ordered_json* row) {
+  (*row)["trace_rows"] = run.trace.size();
+  (*row)["iterate_rows"] = run.iterates.size();
+  if (!run.skipped.empty()) return "";
+  std::string failure = WriteFile(records.trace, RunTraceCsv(problem, run));
+  if (!failure.empty() || run.iterates.empty()) return failure;
+  const CurveFit& fit = *problem.curve_fit();
+  failure = WriteFile(records.iterates, ControlPointsJsonLines(fit, run.iterates));
+  if (!failure.empty()) return failure;
+  // Other cells may read it, or write the same, at this moment.
+  std::string error;
+  const bool has_curve =
+      IsThere(records.curve) || WriteFileAtomically(records.curve, CurveJson(fit), &error);
+  return has_curve ? "" : records.curve;
+}
+
+bool HasRecords(const nlohmann::json& row, const BenchRecords& records) {
+  const auto trace_rows = row.value("trace_rows", 0L);
+  const auto iterate_rows = row.value("iterate_rows", 0L);
+  if (trace_rows > 0 && CountLines(records.trace) != trace_rows + 1) return false;
+  return iterate_rows == 0 ||
+         (CountLines(records.iterates) == iterate_rows && IsThere(records.curve));
+}
+
+}  // namespace batten

@@ -1,0 +1,47 @@
+#ifndef BATTEN_EXPERIMENTS_BENCH_RECORDS_H_
+#define BATTEN_EXPERIMENTS_BENCH_RECORDS_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "experiments/run.h"
+
+namespace batten {
+
+/// Names of what a cell's process writes beside its row.
+struct BenchRecords {
+  std::string trace;     // of all iterations
+  std::string iterates;  // of some; only where the cell keeps them
+  std::string curve;     // to draw them by; all cells of an instance share it
+};
+
+/// Names in the folder of a benchmark's results.
+struct BenchFolder {
+  std::string path;
+  std::string operator/(const std::string& name) const { return path + "/" + name; }
+  std::string log(const std::string& key) const { return path + "/logs/" + key + ".log"; }
+  BenchRecords records(const std::string& key, const std::string& instance) const {
+    return {path + "/traces/" + key + ".csv", path + "/iterates/" + key + ".jsonl",
+            path + "/curves/" + instance + ".json"};
+  }
+};
+
+/// Whether a cell on this problem can keep `most` iterates: control points of at most 20,000
+/// numbers, so that lines stay short, and all together at most 32 MiB, so that the memory of the
+/// solver is still seen.
+bool FitsIterates(const Problem& problem, int most);
+
+/// Writes the trace and, where some were kept, the iterates with what they are drawn by, and sets
+/// "trace_rows" and "iterate_rows" of the row, which says so that they are there. Not forced onto
+/// the disk, which would take longer than a small cell. The name of a file that cannot be written;
+/// empty: all is well.
+std::string WriteRecords(const Problem& problem, const RunResult& run, const BenchRecords& records,
+                         nlohmann::ordered_json* row);
+
+/// All that the row speaks of is there, whole: it may not have reached the disk when the machine
+/// went off.
+bool HasRecords(const nlohmann::json& row, const BenchRecords& records);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_BENCH_RECORDS_H_
