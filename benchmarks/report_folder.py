@@ -58,6 +58,7 @@ def cell(index, generator):
         "options": {"memory": "5", "note": HOSTILE}, "notes": [{"name": "rate", "value": str(rate)}],
         "version": "0.1.0", "commit": "made-up", "compiler": "none",
         "minimum_energy": None if iterations is None else minimum,
+        "findings": ["claim_fails"] if index % 97 == 5 else [],
         "overlapped": generator.randrange(20) == 0, "key": f"{index:016x}", "disagreement": None,
     }
     numbers = ["energy_calls", "gradient_calls", "jacobian_calls", "products", "projections",

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "experiments/bench_kinds.h"
 #include "experiments/bench_tables.h"
 #include "experiments/plot.h"
 
@@ -8,6 +10,7 @@ namespace batten {
 namespace {
 
 constexpr std::size_t kMostPairSolvers = 4;
+constexpr double kMargin = 1.5;  // a factor, so that first and last steps are seen
 
 std::string AxisName(BenchCost cost) {
   switch (cost) {
@@ -29,13 +32,30 @@ double LargestPlace(const std::vector<Steps>& profiles, double lowest) {
   return largest;
 }
 
-/// A step function as a line, from `begin` to `end`.
-PlotSeries StepLine(const Steps& steps, const std::string& label, int color, double begin,
-                    double end) {
+/// In the middle of up to three steps, where lines differ most; without any at `part` of the axis.
+void AddMarks(const Steps& steps, double part, PlotSeries* series) {
+  constexpr std::size_t kMost = 3;
+  const double begin = series->x.front(), end = series->x.back();
+  const auto first = static_cast<std::size_t>(
+      std::upper_bound(steps.x.begin(), steps.x.end(), begin) - steps.x.begin());
+  const std::size_t count = steps.x.size() - first;
+  for (std::size_t k = 0; k < std::min(kMost, count); ++k) {
+    const std::size_t step = first + (2 * k + 1) * count / (2 * std::min(kMost, count));
+    series->mark_x.push_back(steps.x[step]);
+    series->mark_y.push_back(0.5 * (steps.y[step] + (step > 0 ? steps.y[step - 1] : 0.0)));
+  }
+  if (count > 0) return;
+  series->mark_x = {begin * std::pow(end / begin, part)};
+  series->mark_y = {series->y.back()};
+}
+
+/// A step function as a line from `begin` to `end` > `begin` > 0, the `index`-th of `count`.
+PlotSeries StepLine(const Steps& steps, const std::string& label, std::size_t index,
+                    std::size_t count, double begin, double end) {
   PlotSeries series;
   series.label = label;
-  series.color = color;
-  series.style = color < 8 ? PlotSeries::Style::kLine : PlotSeries::Style::kDashed;
+  series.color = static_cast<int>(index);
+  series.style = PlotSeries::Style::kOneOfMany;
   double y = 0.0;
   series.x.push_back(begin);
   series.y.push_back(steps.At(begin));
@@ -50,6 +70,7 @@ PlotSeries StepLine(const Steps& steps, const std::string& label, int color, dou
   }
   series.x.push_back(end);
   series.y.push_back(y);
+  AddMarks(steps, (static_cast<double>(index) + 0.5) / static_cast<double>(count), &series);
   return series;
 }
 
@@ -61,10 +82,10 @@ PlotPanel StepPanel(const std::string& title, const std::string& x_label,
   panel.x_label = x_label;
   panel.y_label = "share";
   panel.log_x = true;
-  constexpr double kMargin = 1.5;  // a factor, so that last steps are seen
+  panel.is_share = true;
   const double end = kMargin * LargestPlace(profiles, begin);
   for (std::size_t s = 0; s < profiles.size(); ++s) {
-    panel.series.push_back(StepLine(profiles[s], names[s], static_cast<int>(s), begin, end));
+    panel.series.push_back(StepLine(profiles[s], names[s], s, profiles.size(), begin, end));
   }
   return panel;
 }
@@ -75,85 +96,128 @@ bool AnyFinite(const CostTable& costs) {
   });
 }
 
-double SmallestPlace(const std::vector<Steps>& profiles) {
+/// Where an axis begins so that first steps are seen; 1 where there are none.
+double FirstPlace(const std::vector<Steps>& profiles) {
   double smallest = HUGE_VAL;
   for (const Steps& steps : profiles) {
     if (!steps.x.empty()) smallest = std::min(smallest, steps.x.front());
   }
-  return smallest;
+  return std::isfinite(smallest) ? smallest / kMargin : 1.0;
 }
 
-/// By each target (rows) and cost (columns).
-std::vector<PlotPanel> PerformancePanels(const BenchResults& results) {
+/// To the best basin, and where there are several to a run's own one beside it.
+std::vector<BenchGoal> GoalsOf(const BenchResults& results) {
+  if (!HasBasins(results)) return {BenchGoal::kBestBasin};
+  return {BenchGoal::kBestBasin, BenchGoal::kOwnBasin};
+}
+
+std::string Title(const BenchResults& results, const std::string& what, BenchGoal goal) {
+  if (!HasBasins(results)) return what;
+  return what + (goal == BenchGoal::kBestBasin ? ", best basin" : ", own basin");
+}
+
+/// A panel for each target, cost and goal, goals side by side, of what somebody reaches.
+using MakePanel = std::function<PlotPanel(const std::string& title, std::size_t target,
+                                          BenchCost cost, BenchGoal goal)>;
+std::vector<PlotPanel> PanelsOf(const BenchResults& results, const MakePanel& make) {
   std::vector<PlotPanel> panels;
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
     for (const BenchCost cost : kBenchCosts) {
-      const CostTable costs = CostsOf(results, t, cost, nullptr);
-      if (!AnyFinite(costs)) continue;
-      panels.push_back(StepPanel(results.targets[t].label + ", " + AxisName(cost),
-                                 "times the best solver's " + AxisName(cost),
-                                 PerformanceProfiles(costs), results.solvers, 1.0));
+      // Whoever comes to the best basin comes to its own one: panels of both, or of none.
+      if (!AnyFinite(CostsOf(results, t, cost, nullptr, GoalsOf(results).back()))) continue;
+      for (const BenchGoal goal : GoalsOf(results)) {
+        const std::string what = results.targets[t].label + ", " + AxisName(cost);
+        panels.push_back(make(Title(results, what, goal), t, cost, goal));
+      }
     }
   }
   return panels;
+}
+
+std::vector<PlotPanel> PerformancePanels(const BenchResults& results) {
+  return PanelsOf(results, [&results](const std::string& title, std::size_t target, BenchCost cost,
+                                      BenchGoal goal) {
+    return StepPanel(title, "times the best solver's " + AxisName(cost),
+                     PerformanceProfiles(CostsOf(results, target, cost, nullptr, goal)),
+                     results.solvers, 1.0);
+  });
 }
 
 std::vector<PlotPanel> DataPanels(const BenchResults& results) {
-  std::vector<PlotPanel> panels;
-  for (std::size_t t = 0; t < results.targets.size(); ++t) {
-    for (const BenchCost cost : kBenchCosts) {
-      std::vector<std::size_t> rows_of;
-      const CostTable costs = CostsOf(results, t, cost, &rows_of);
-      if (!AnyFinite(costs)) continue;
-      std::vector<double> units(costs.size(), 1.0);
-      if (cost == BenchCost::kEvaluations) {
-        for (std::size_t k = 0; k < units.size(); ++k) {
-          units[k] = results.instances[rows_of[k]].num_variables + 1.0;
-        }
-      }
-      const std::vector<Steps> profiles = DataProfiles(costs, units);
-      const std::string label =
-          AxisName(cost) + (cost == BenchCost::kEvaluations ? " / (n + 1)" : "");
-      panels.push_back(StepPanel(results.targets[t].label + ", " + AxisName(cost), label, profiles,
-                                 results.solvers, SmallestPlace(profiles) / 1.5));
+  return PanelsOf(results, [&results](const std::string& title, std::size_t target, BenchCost cost,
+                                      BenchGoal goal) {
+    std::vector<std::size_t> rows_of;
+    const CostTable costs = CostsOf(results, target, cost, &rows_of, goal);
+    const bool is_counted = cost == BenchCost::kEvaluations;
+    std::vector<double> units(costs.size(), 1.0);
+    for (std::size_t k = 0; is_counted && k < units.size(); ++k) {
+      units[k] = results.instances[rows_of[k]].num_variables + 1.0;
     }
-  }
-  return panels;
+    const std::vector<Steps> profiles = DataProfiles(costs, units);
+    return StepPanel(title, AxisName(cost) + (is_counted ? " / (n + 1)" : ""), profiles,
+                     results.solvers, FirstPlace(profiles));
+  });
 }
 
-/// Over all targets at once.
+/// Of each solver, on all instances and to all targets.
+CostTable AllCosts(const BenchResults& results, BenchCost cost, BenchGoal goal) {
+  CostTable all(results.solvers.size());
+  for (std::size_t t = 0; t < results.targets.size(); ++t) {
+    for (const std::vector<double>& row : CostsOf(results, t, cost, nullptr, goal)) {
+      for (std::size_t s = 0; s < row.size(); ++s) all[s].push_back(row[s]);
+    }
+  }
+  return all;
+}
+
 std::vector<PlotPanel> DistributionPanels(const BenchResults& results) {
   std::vector<PlotPanel> panels;
   for (const BenchCost cost : kBenchCosts) {
-    std::vector<std::vector<double>> all(results.solvers.size());
-    for (std::size_t t = 0; t < results.targets.size(); ++t) {
-      for (const std::vector<double>& row : CostsOf(results, t, cost, nullptr)) {
-        for (std::size_t s = 0; s < row.size(); ++s) all[s].push_back(row[s]);
+    if (!AnyFinite(AllCosts(results, cost, GoalsOf(results).back()))) continue;
+    for (const BenchGoal goal : GoalsOf(results)) {
+      std::vector<Steps> steps;
+      for (const std::vector<double>& costs : AllCosts(results, cost, goal)) {
+        steps.push_back(Distribution(costs));
       }
+      panels.push_back(StepPanel(Title(results, "instances x targets reached", goal),
+                                 AxisName(cost), steps, results.solvers, FirstPlace(steps)));
     }
-    if (!AnyFinite(all)) continue;
-    std::vector<Steps> steps;
-    for (std::vector<double>& costs : all) steps.push_back(Distribution(std::move(costs)));
-    panels.push_back(StepPanel("instances x targets reached", AxisName(cost), steps,
-                               results.solvers, SmallestPlace(steps) / 1.5));
   }
   return panels;
 }
 
-std::vector<PlotPanel> PairPanels(const BenchResults& results, std::size_t target) {
+std::vector<PlotPanel> PairPanelsOf(const BenchResults& results, std::size_t target) {
   std::vector<PlotPanel> panels;
   for (std::size_t a = 0; a < results.solvers.size(); ++a) {
     for (std::size_t b = a + 1; b < results.solvers.size(); ++b) {
       const CostTable costs = PairCosts(results, target, BenchCost::kEvaluations, a, b);
       if (!AnyFinite(costs)) continue;
-      panels.push_back(StepPanel(results.targets[target].label + ", one basin",
-                                 "times the better one's evaluations", PairProfiles(costs, 0, 1),
-                                 {results.solvers[a], results.solvers[b]}, 1.0));
+      panels.push_back(
+          StepPanel(Title(results, results.targets[target].label, BenchGoal::kOwnBasin),
+                    "times the better one's evaluations", PairProfiles(costs, 0, 1),
+                    {results.solvers[a], results.solvers[b]}, 1.0));
     }
   }
   return panels;
 }
 
+/// Of the strictest gap.
+std::vector<PlotPanel> PairPanels(const BenchResults& results) {
+  std::size_t target = 0;
+  for (std::size_t t = 0; t < results.targets.size(); ++t) {
+    if (results.targets[t].gap > 0.0) target = t;
+  }
+  const bool has_pairs = results.solvers.size() <= kMostPairSolvers && !results.targets.empty();
+  return has_pairs ? PairPanelsOf(results, target) : std::vector<PlotPanel>();
+}
+
+struct BenchFigure {
+  const char* name;
+  std::vector<PlotPanel> (*panels)(const BenchResults& results);
+  int columns;  // where there are no basins, which stand in two
+};
+
+/// Where there is nothing to draw an older picture goes.
 FigureResult DrawOrRemove(const std::string& stem, const std::vector<PlotPanel>& panels,
                           int columns, FileBatch* batch) {
   if (panels.empty()) return NoFigure(stem, "", batch);
@@ -165,19 +229,18 @@ FigureResult DrawOrRemove(const std::string& stem, const std::vector<PlotPanel>&
 std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const std::string& folder,
                                            FileBatch* batch) {
   const int costs = results.overlapped ? 1 : static_cast<int>(kBenchCosts.size());
-  std::vector<FigureResult> figures = {
-      DrawOrRemove(folder + "/performance_profiles", PerformancePanels(results), costs, batch),
-      DrawOrRemove(folder + "/data_profiles", DataPanels(results), costs, batch),
-      DrawOrRemove(folder + "/runtime_distributions", DistributionPanels(results), 1, batch)};
-  const bool has_pairs = results.solvers.size() <= kMostPairSolvers && !results.targets.empty();
-  // Of the strictest gap.
-  std::size_t target = 0;
-  for (std::size_t t = 0; t < results.targets.size(); ++t) {
-    if (results.targets[t].gap > 0.0) target = t;
+  const BenchFigure all[] = {{"performance_profiles", &PerformancePanels, costs},
+                             {"data_profiles", &DataPanels, costs},
+                             {"runtime_distributions", &DistributionPanels, 1},
+                             {"pair_profiles", &PairPanels, 2}};
+  std::vector<FigureResult> figures;
+  for (const char* kind : {"fixed", "free", "projected"}) {
+    const BenchResults part = OfKind(results, kind);
+    for (const BenchFigure& figure : all) {
+      figures.push_back(DrawOrRemove(folder + "/" + figure.name + "_" + kind, figure.panels(part),
+                                     HasBasins(part) ? 2 : figure.columns, batch));
+    }
   }
-  figures.push_back(DrawOrRemove(folder + "/pair_profiles",
-                                 has_pairs ? PairPanels(results, target) : std::vector<PlotPanel>(),
-                                 2, batch));
   return figures;
 }
 

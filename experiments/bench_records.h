@@ -33,7 +33,7 @@ bool FitsIterates(const Problem& problem, int most);
 
 /// Writes the trace and, where some were kept, the iterates with what they are drawn by, and sets
 /// "trace_rows" and "iterate_rows" of the row, which says so that they are there. Not forced onto
-/// the disk, which would take longer than a small cell. The name of a file that cannot be written;
+/// the disk, which would take longer than a small cell. The file that cannot be written and why;
 /// empty: all is well.
 std::string WriteRecords(const Problem& problem, const RunResult& run, const BenchRecords& records,
                          nlohmann::ordered_json* row);

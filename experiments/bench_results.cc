@@ -232,12 +232,13 @@ const char* ToString(BenchCost cost) {
 BenchResults CollectResults(const BenchData& data) { return Collector(data).Collect(); }
 
 CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cost,
-                  std::vector<std::size_t>* rows_of) {
+                  std::vector<std::size_t>* rows_of, BenchGoal goal) {
   const std::size_t num_solvers = results.solvers.size();
   std::vector<std::vector<std::vector<double>>> seeds(
       results.instances.size(), std::vector<std::vector<double>>(num_solvers));
   for (const BenchRun& run : results.runs) {
-    const double value = run.to_target[target][static_cast<std::size_t>(cost)];
+    const auto& costs = goal == BenchGoal::kBestBasin ? run.to_target : run.to_own_target;
+    const double value = costs[target][static_cast<std::size_t>(cost)];
     if (!std::isnan(value)) seeds[run.instance][run.solver].push_back(value);
   }
   CostTable costs;

@@ -75,12 +75,15 @@ struct BenchResults {
 /// `data` must outlive the result. Reads the traces of the folder.
 BenchResults CollectResults(const BenchData& data);
 
+/// Where there are several minima: whose a gap is taken to.
+enum class BenchGoal { kBestBasin, kOwnBasin };
+
 /// Costs of one target, a row per instance that has it, a column per solver (several seeds of a
 /// solver: their median); infinity where a solver does not reach it or does not apply, NaN where it
 /// was not run (excluded, not finished) or its time is not known.
 /// `rows_of`, if not null, receives which instance each row is.
 CostTable CostsOf(const BenchResults& results, std::size_t target, BenchCost cost,
-                  std::vector<std::size_t>* rows_of);
+                  std::vector<std::size_t>* rows_of, BenchGoal goal = BenchGoal::kBestBasin);
 
 /// Costs of two solvers on instances to which both apply and on which they end in one basin: a fast
 /// way to another minimum is neither won nor lost, nor is an end of unknown basin. Costs that are

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cost_functions/options.h"
+#include "experiments/bench_kinds.h"
 #include "experiments/comparison.h"
 #include "experiments/short_number.h"
 #include "experiments/table_text.h"
@@ -89,23 +90,13 @@ KindCounts CountKind(const BenchResults& results, const std::string& kind, std::
 }
 
 /// The rows of CostsOf() that are of one kind; `rows_of` as there.
-CostTable OfKind(const BenchResults& results, const CostTable& all,
-                 const std::vector<std::size_t>& rows_of, const std::string& kind) {
+CostTable RowsOfKind(const BenchResults& results, const CostTable& all,
+                     const std::vector<std::size_t>& rows_of, const std::string& kind) {
   CostTable costs;
   for (std::size_t r = 0; r < all.size(); ++r) {
     if (results.instances[rows_of[r]].kind == kind) costs.push_back(all[r]);
   }
   return costs;
-}
-
-std::vector<std::string> Kinds(const BenchResults& results) {
-  std::vector<std::string> kinds;
-  for (const BenchInstance& instance : results.instances) {
-    if (std::find(kinds.begin(), kinds.end(), instance.kind) == kinds.end()) {
-      kinds.push_back(instance.kind);
-    }
-  }
-  return kinds;
 }
 
 /// For people: numbers that are not whole to four digits.
@@ -178,7 +169,7 @@ CsvTable RunTable(const BenchResults& results) {
 CsvTable SolverTable(const BenchResults& results) {
   CsvTable table({"target", "kind", "solver", "instances", "not_run", "solved", "best_basin",
                   "of_basins", "evaluations", "work_units", "seconds"});
-  const std::vector<std::string> kinds = Kinds(results);
+  const std::vector<std::string> kinds = ParameterKinds(results);
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
     std::vector<std::size_t> rows_of;
     std::array<CostTable, kBenchCosts.size()> all;
@@ -188,7 +179,7 @@ CsvTable SolverTable(const BenchResults& results) {
     for (const std::string& kind : kinds) {
       std::array<CostTable, kBenchCosts.size()> costs;
       for (std::size_t k = 0; k < costs.size(); ++k) {
-        costs[k] = OfKind(results, all[k], rows_of, kind);
+        costs[k] = RowsOfKind(results, all[k], rows_of, kind);
       }
       if (costs[0].empty()) continue;
       for (std::size_t s = 0; s < results.solvers.size(); ++s) {

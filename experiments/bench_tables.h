@@ -30,8 +30,9 @@ CsvTable PairTable(const BenchResults& results);
 bool WriteBenchTables(const BenchResults& results, const std::string& folder, FileBatch* batch,
                       std::string* error);
 
-/// Performance profiles, data profiles and runtime distributions by each cost, and of every pair
-/// where there are at most four solvers. Those of time are not drawn where all cells overlapped.
+/// For each kind of parameters performance profiles, data profiles and runtime distributions by
+/// each cost, to the best basin and to each run's own, and of every pair where at most four solvers
+/// apply. Those of time are not drawn where all cells overlapped.
 std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const std::string& folder,
                                            FileBatch* batch);
 

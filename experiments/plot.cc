@@ -11,14 +11,34 @@ namespace {
 constexpr int kPanelWidth = 560;
 constexpr int kPanelHeight = 320;
 constexpr std::size_t kMostText = 90;
+constexpr int kLegendLine = 17;  // pixels
 
 // Okabe & Ito, Color Universal Design, 2008, without the yellow.
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                    "#56b4e9", "#e69f00", "#000000", "#888888"};
 
+constexpr int kNumColors = static_cast<int>(std::size(kColors));
+// Of each eight lines: solid, dashes, dots, dash and dot, long dashes, dash and two dots; and its
+// marks as gnuplot counts them: none, disc, square, triangle, diamond, triangle on its tip.
+constexpr const char* kDashes[] = {
+    "1", "(10,5)", "(2.5,3.5)", "(10,4,2.5,4)", "(22,6)", "(10,4,2.5,4,2.5,4)"};
+constexpr int kMarks[] = {0, 7, 5, 9, 13, 11};
+static_assert(kMostOfMany == kNumColors * static_cast<int>(std::size(kDashes)));
+static_assert(std::size(kDashes) == std::size(kMarks));
+
 std::string Color(int index) {
-  constexpr int kCount = static_cast<int>(std::size(kColors));
-  return std::string("'") + kColors[((index % kCount) + kCount) % kCount] + "'";
+  return std::string("'") + kColors[((index % kNumColors) + kNumColors) % kNumColors] + "'";
+}
+
+std::size_t GroupOf(const PlotSeries& series) {
+  return static_cast<std::size_t>(series.color / kNumColors) % std::size(kDashes);
+}
+
+/// Behind `with lines` or `with linespoints`.
+std::string LookOfMany(const PlotSeries& series) {
+  const std::size_t group = GroupOf(series);
+  return std::string(" linewidth 1.5 dashtype ") + kDashes[group] + " pointtype " +
+         std::to_string(kMarks[group]) + " pointsize 0.7 linecolor rgb " + Color(series.color);
 }
 
 std::string StyleWords(const PlotSeries& series) {
@@ -28,6 +48,8 @@ std::string StyleWords(const PlotSeries& series) {
       return "with lines linewidth 1.5 " + color;
     case PlotSeries::Style::kDashed:
       return "with lines linewidth 1.2 dashtype 2 " + color;
+    case PlotSeries::Style::kOneOfMany:
+      return "with lines" + LookOfMany(series);
     case PlotSeries::Style::kCircles:
       return "with points pointtype 6 pointsize 1.2 " + color;
     case PlotSeries::Style::kPoints:
@@ -62,7 +84,7 @@ int LegendWidth(const PlotPanel& panel) {
   std::size_t longest = 0;
   for (const PlotSeries& series : panel.series) longest = std::max(longest, series.label.size());
   constexpr double kSmaller = 0.7;
-  constexpr int kMark = 6;
+  constexpr int kMark = 8;
   const auto shown = static_cast<double>(std::min(longest, kMostText));
   return panel.legend && longest > 0 ? kMark + static_cast<int>(kSmaller * shown) : 2;
 }
@@ -72,26 +94,59 @@ bool IsShown(const PlotPanel& panel, double x, double y) {
          (!panel.log_y || y > 0.0);
 }
 
+/// What can be shown of a series, as a block of the data file.
+std::string Block(const PlotPanel& panel, const std::vector<double>& x,
+                  const std::vector<double>& y) {
+  std::string block;
+  // Edited tables can leave one side shorter.
+  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) {
+    if (IsShown(panel, x[k], y[k])) block += GnuplotNumbers({x[k], y[k]});
+  }
+  return block;
+}
+
+std::string Title(const PlotSeries& series) {
+  if (series.label.empty()) return " notitle";
+  return " title " + GnuplotString(ShownText(series.label, kMostText));
+}
+
 /// The panel's plot command; its series follow those drawn before in the data file.
 std::string PanelPlot(const PlotPanel& panel, int* num_series, std::string* data) {
   std::string plot;
+  const auto Add = [&](const std::string& block, const std::string& words) {
+    if (!block.empty()) *data += (*num_series > 0 ? "\n\n" : "") + block;
+    plot +=
+        (plot.empty() ? "plot " : ", \\\n     ") +
+        (block.empty() ? "NaN" : "DATA index " + std::to_string((*num_series)++) + " using 1:2") +
+        " " + words;
+  };
   for (const PlotSeries& series : panel.series) {
-    std::string block;
-    // Edited tables can leave one side shorter.
-    for (std::size_t k = 0; k < std::min(series.x.size(), series.y.size()); ++k) {
-      if (IsShown(panel, series.x[k], series.y[k])) {
-        block += GnuplotNumbers({series.x[k], series.y[k]});
-      }
+    const std::string line = Block(panel, series.x, series.y);
+    if (line.empty()) continue;
+    const std::string marks = Block(panel, series.mark_x, series.mark_y);
+    const bool is_marked = series.style == PlotSeries::Style::kOneOfMany && GroupOf(series) > 0;
+    if (!is_marked || marks.empty()) {
+      Add(line, StyleWords(series) + Title(series));
+      continue;
     }
-    if (block.empty()) continue;
-    *data += (*num_series > 0 ? "\n\n" : "") + block;
-    plot += (plot.empty() ? "plot " : ", \\\n     ") +
-            ("DATA index " + std::to_string(*num_series)) + " using 1:2 " + StyleWords(series) +
-            (series.label.empty() ? " notitle"
-                                  : " title " + GnuplotString(ShownText(series.label, kMostText)));
-    ++*num_series;
+    // The legend is to show line and mark together, which stand in the picture by themselves.
+    Add(line, StyleWords(series) + " notitle");
+    Add(marks, "with points" + LookOfMany(series) + " notitle");
+    if (!series.label.empty()) Add("", "with linespoints" + LookOfMany(series) + Title(series));
   }
   return plot.empty() ? "plot NaN notitle\n" : plot + "\n";
+}
+
+/// A panel's, so that its legend is in the picture.
+int PanelHeight(const std::vector<PlotPanel>& panels) {
+  std::ptrdiff_t longest = 0;
+  for (const PlotPanel& panel : panels) {
+    const auto lines = std::count_if(panel.series.begin(), panel.series.end(),
+                                     [](const PlotSeries& one) { return !one.label.empty(); });
+    if (panel.legend) longest = std::max(longest, lines);
+  }
+  constexpr int kRest = 150;  // title, axis and room around
+  return std::max(kPanelHeight, kRest + kLegendLine * static_cast<int>(longest));
 }
 
 }  // namespace
@@ -101,7 +156,7 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
   const int count = static_cast<int>(panels.size());
   const int rows = (count + columns - 1) / columns;
   const int width = kPanelWidth * std::min(columns, count);
-  const int height = kPanelHeight * rows;
+  const int height = PanelHeight(panels) * rows;
   std::string data;
   std::string commands = "set multiplot layout " + std::to_string(rows) + "," +
                          std::to_string(std::min(columns, count)) +
@@ -120,10 +175,11 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
     commands += std::to_string(LegendWidth(panel)) + (!panel.equal_scale      ? ", 4.5, 2.5\n"
                                                       : panel.x_label.empty() ? ", 1, 2.5\n"
                                                                               : ", 2.5, 2.5\n");
+    commands += panel.is_share ? "set yrange [0:1.03]\n" : "set yrange [*:*]\n";
     commands += "set title " + GnuplotString(ShownText(panel.title, kMostText)) + " noenhanced\n" +
                 Axis("x", panel.x_label, panel.log_x) + Axis("y", panel.y_label, panel.log_y);
     commands += panel.legend ? "set key at graph 1.03, graph 1 left top vertical Left reverse "
-                               "noenhanced samplen 1.5 spacing 1.1 font ',9'\n"
+                               "noenhanced maxcols 1 samplen 3 spacing 1.1 font ',9'\n"
                              : "unset key\n";
     commands += PanelPlot(panel, &num_series, &data);
   }

@@ -189,6 +189,27 @@ TEST_F(Bench, ThePageHasAPlayerOfEachInstance) {
               HasSubstr("60 of 60 cells are finished."));
 }
 
+TEST_F(Bench, DrawsEachKindOfParametersByItself) {
+  json suite = GoodSuite();
+  suite["problems"][0]["control_points"] = 8;
+  suite["problems"][0]["parameter_kind"] = {"fixed", "free"};
+  suite["solvers"] = {"banded_cholesky", "lbfgs", "foot_newton"};
+  suite["repetitions"] = 1;
+  ASSERT_EQ(RunBatten({"bench", Suite(suite), "--out=" + (folder_ / "out"), "--quiet"}).status, 0);
+  for (const char* figure : {"performance_profiles", "data_profiles", "runtime_distributions"}) {
+    const std::string stem = folder_ / ("out/" + std::string(figure));
+    const std::string fixed = ReadFile(stem + "_fixed.gp"), free = ReadFile(stem + "_free.gp");
+    EXPECT_THAT(fixed, HasSubstr("banded_cholesky"));
+    EXPECT_THAT(fixed, ::testing::Not(HasSubstr("foot_newton")));
+    EXPECT_THAT(fixed, ::testing::Not(HasSubstr("basin")));
+    EXPECT_THAT(free, HasSubstr("foot_newton"));
+    EXPECT_THAT(free, ::testing::Not(HasSubstr("banded_cholesky")));
+    EXPECT_THAT(free, HasSubstr("own basin"));
+    EXPECT_TRUE(std::filesystem::exists(stem + "_free.svg"));
+    EXPECT_FALSE(std::filesystem::exists(stem + "_projected.svg"));
+  }
+}
+
 TEST_F(Bench, CutsATornLastLine) {
   const std::string suite = Suite(GoodSuite());
   ASSERT_EQ(RunIn(suite, "out").status, 0);

@@ -170,7 +170,7 @@ function colours(solvers, width) {
   const columns = Math.max(1, Math.min(solvers.length, Math.floor(width / 170)));
   return { field: 'solver', type: 'nominal', title: null,
            scale: { domain: solvers, range: solvers.map(colourOf) },
-           legend: { orient: 'bottom', columns, symbolType: 'stroke', symbolSize: 250 } };
+           legend: { orient: 'bottom', columns, symbolType: 'stroke', symbolSize: 900 } };
 }
 // Drag moves, Ctrl + wheel zooms: the wheel alone goes on scrolling the page.
 const kZoom = { name: 'zoom', bind: 'scales',
@@ -178,17 +178,25 @@ const kZoom = { name: 'zoom', bind: 'scales',
 const kHover = { name: 'hover', select: { type: 'point', on: 'pointerover', nearest: true,
                                           clear: 'pointerout' } };
 
-// Lines of rows {solver, run, px, py, ...}, one per run.
+// A click on a name in the legend leaves that solver's lines alone bright, another one all.
+const kPick = { name: 'pick', select: { type: 'point', fields: ['solver'] }, bind: 'legend' };
+
+// Lines of rows {solver, run, px, py, ...}, one per run; `mark` is the shape at one.
 function lineSpec({ width, height, solvers, x, y, tooltip, interpolate = 'linear' }) {
   const shared = { x, y, color: colours(solvers, width) };
   const dash = { ...looksOf(solvers, 'strokeDash', kDashes) };
+  const bright = { condition: { param: 'pick', value: 1 }, value: 0.12 };
   return {
     width, height, autosize: { type: 'fit', contains: 'padding' }, data: { name: 'rows' },
     layer: [
-      { params: [kZoom], mark: { type: 'line', interpolate, clip: true, strokeWidth: 1.8,
-                                 invalid: 'break-paths-filter-domains' },
-        encoding: { ...shared, strokeDash: { ...dash, legend: shared.color.legend },
+      { params: [kZoom, kPick], mark: { type: 'line', interpolate, clip: true, strokeWidth: 1.8,
+                                        invalid: 'break-paths-filter-domains' },
+        encoding: { ...shared, strokeDash: { ...dash, legend: shared.color.legend }, opacity: bright,
                     detail: { field: 'run' } } },
+      { transform: [{ filter: 'datum.mark' }],
+        mark: { type: 'point', filled: true, size: 40, clip: true },
+        encoding: { ...shared, opacity: bright,
+                    shape: { field: 'mark', type: 'nominal', scale: null } } },
       { params: [kHover], mark: { type: 'point', filled: true, size: 60, clip: true },
         encoding: { ...shared, tooltip,
                     opacity: { condition: { param: 'hover', empty: false, value: 1 }, value: 0 } } },
@@ -211,3 +219,18 @@ function dotSpec({ width, height, solvers, x, y, tooltip }) {
 const heightFor = (width, solvers) =>
   Math.round(Math.min(420, Math.max(260, width * 0.55)) +
              20 * Math.ceil(solvers.length / Math.max(1, Math.floor(width / 170))));
+
+// Some marks on each line of solvers beyond the first eight, those of different lines apart.
+function putMarks(points) {
+  const byRun = new Map();
+  for (const point of points) {
+    if (!isMarked(point.solver)) continue;
+    if (!byRun.has(point.run)) byRun.set(point.run, []);
+    byRun.get(point.run).push(point);
+  }
+  for (const line of byRun.values()) {
+    const count = Math.min(4, line.length), shift = (allSolvers.indexOf(line[0].solver) % 8) / 8;
+    const shape = lookOf(line[0].solver, kShapes);
+    for (let k = 0; k < count; ++k) line[Math.floor((k + shift) * line.length / count)].mark = shape;
+  }
+}

@@ -39,10 +39,13 @@ function derive(row, index) {
   return row;
 }
 
+// What bench has found against a run (docs/formats.md).
+const finds = (row, what) => Array.isArray(row.findings) && row.findings.includes(what);
+
 // skipped | reached | failed (did not reach what was asked) | refuted (claims what is not so).
 function verdictOf(row) {
   if (row.stop === 'skipped') return 'skipped';
-  if (row.verified === false || row.disagreement) return 'refuted';
+  if (row.verified === false || row.disagreement || finds(row, 'claim_fails')) return 'refuted';
   if (kReached.has(row.stop)) return 'reached';
   if (!kReachedIfSmall.has(row.stop)) return 'failed';
   if (row.stop === 'native_stop' && row.mode === 'native') return 'reached';
@@ -68,16 +71,17 @@ function applyFilters() {
 }
 
 // --- Colours: those of Okabe and Ito (2008), darkened or lightened for the two schemes. Solver k
-// has colour k mod 8 and dash k / 8, in every plot.
+// has colour k mod 8, and dash and mark k / 8, in every plot.
 const kPalettes = {
   light: ['#0072b2', '#d55e00', '#009e73', '#c2589a', '#a67c00', '#4aa3df', '#5b3fa0', '#4a4a4a'],
   dark: ['#4fa8e0', '#ff8a3d', '#2ec79a', '#e69ac4', '#e6c229', '#a9dcff', '#b79be8', '#d0d0d0'],
 };
-const kDashes = [[1, 0], [7, 3], [2, 2], [8, 3, 2, 3]];
-const kShapes = ['circle', 'square', 'triangle-up', 'diamond'];
+const kDashes = [[1, 0], [8, 4], [2, 3], [8, 3, 2, 3], [16, 4], [8, 3, 2, 3, 2, 3]];
+const kShapes = ['circle', 'square', 'triangle-up', 'diamond', 'triangle-down', 'cross'];
 let scheme = 'light';
 const colourOf = solver => kPalettes[scheme][allSolvers.indexOf(solver) % 8];
 const lookOf = (solver, looks) => looks[Math.floor(allSolvers.indexOf(solver) / 8) % looks.length];
+const isMarked = solver => allSolvers.indexOf(solver) >= 8;  // colour and a full line tell no more
 
 // --- Text.
 function show(value, digits = 4) {
@@ -104,7 +108,9 @@ function groupName(index) {
   const several = name => new Set(doc.groups.map(other => other[name])).size > 1;
   const parts = [String(group.problem ?? '(no problem)')];
   if (several('terms') && group.terms) parts.push(String(group.terms));
-  if (several('data_seed') && isNumber(group.data_seed)) parts.push(`data seed ${group.data_seed}`);
+  for (const [field, word] of [['data_seed', 'data seed'], ['start_seed', 'start']]) {
+    if (several(field) && group[field] > 0) parts.push(`${word} ${group[field]}`);  // 0: none
+  }
   return parts.join(', ');
 }
 

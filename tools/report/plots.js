@@ -34,8 +34,11 @@ function convergencePlot(settings) {
     const drawn = timed.slice(0, kMostLines);
     const data = drawn.flatMap((row, run) => convergenceRows(row, run, along, settings, group));
     const atEdge = settings.logX && putStartsAtEdge(data);
+    putMarks(data);
     const solvers = allSolvers.filter(solver => drawn.some(row => row.solver === solver));
-    const star = group.direct ? 'of the direct answer' : 'the lowest that any run of the folder saw';
+    const star = group.direct ? 'of the direct answer'
+      : group.basins ? 'the best minimum that some run from this start leads to'
+      : 'the lowest that any run of the folder saw';
     const caption = `${up.title} against ${along.title}, each run of ` +
       `${all.length > 0 ? groupName(settings.group) : 'no problem'} a line. ` +
       `E* = ${show(group.minimum, 8)}, ${star}. ` +
@@ -93,8 +96,9 @@ function putStartsAtEdge(points) {
 }
 
 // --- How much a run needs to a target, which E* and the whole trace have decided.
-// Infinity: it does not come there. null: there is nothing to tell it by.
-function costOf(row, target, measure) {
+// Infinity: it does not come there. null: there is nothing to tell it by. `own`: gaps are to the
+// minimum of the basin that the run itself ends in, where the folder tells which.
+function costOf(row, target, measure, own) {
   if (target === 'stop') {
     const value = row[measure === 'iteration' ? 'iterations' : measure];
     return row.verdict !== 'reached' ? Infinity : isNumber(value) ? value : null;
@@ -102,20 +106,38 @@ function costOf(row, target, measure) {
   if (row.verdict === 'refuted') return Infinity;
   const trace = traceOf(row);
   if (!trace) return Infinity;
-  const hits = trace[7][kAlong[measure].column - 1];
+  const hits = ((own && trace[8]) || trace[7])[kAlong[measure].column - 1];
   return isNumber(hits[kTargets.indexOf(target)]) ? hits[kTargets.indexOf(target)] : Infinity;
 }
 
-// The instances with their runs by solver; those that were timed beside others not by time.
-function instances(measure) {
-  const list = kAlong[measure].isTime ? chosen.filter(row => !isOverlapped(row)) : chosen;
+// Fits with fixed, free and projected parameters are different problems.
+const kindOfGroup = doc.groups.map((_, group) =>
+  String(rows.find(row => row.group === group && row.parameter_kind)?.parameter_kind ?? ''));
+const kindOf = row => kindOfGroup[row.group];  // skipped runs do not say it
+const allKinds = inOrder(rows.map(kindOf));
+const hasBasins = kind => rows.some(row => kindOf(row) === kind && traceOf(row)?.[8]);
+
+// The instances of one kind of parameters with the runs of the solvers that apply to one of them;
+// those that were timed beside others not by time.
+function instances(measure, kind) {
+  const here = chosen.filter(row => kindOf(row) === kind);
+  const applying = new Set(here.filter(row => row.verdict !== 'skipped').map(row => row.solver));
+  const runs = here.filter(row => applying.has(row.solver));
+  const list = kAlong[measure].isTime ? runs.filter(row => !isOverlapped(row)) : runs;
   const byInstance = new Map();
   for (const row of list) {
     if (!byInstance.has(row.instanceId)) byInstance.set(row.instanceId, new Map());
     byInstance.get(row.instanceId).set(row.solver, row);
   }
-  return { list: [...byInstance.values()], numOverlapped: chosen.length - list.length };
+  return { list: [...byInstance.values()], numOverlapped: runs.length - list.length };
 }
+function profileTitle(what, kind, own) {
+  return [what, kind && `${kind} parameters`, hasBasins(kind) && (own ? 'own basin' : 'best basin')]
+    .filter(Boolean).join(', ');
+}
+const basinText = own => own
+  ? ' Gaps are to the minimum of the basin that a run itself ends in: a fast way to a worse minimum counts.'
+  : '';
 const solversOf = list =>
   allSolvers.filter(solver => list.some(runs => runs.has(solver)));
 const failureText = runs => {
@@ -129,10 +151,13 @@ const targetText = target =>
 
 // Dolan, More, Benchmarking optimization software with performance profiles, 2002:
 // rho_s(tau) = share of instances that s solves within tau times the cost of the best solver.
-function profilePlot(settings) {
-  return new Plot('Performance profile', width => {
+function profilePlot(settings, kind, own) {
+  return new Plot(profileTitle('Performance profile', kind, own), width => {
     const { measure, target } = settings;
-    const { list, numOverlapped } = instances(measure);
+    if (own && target === 'stop') {
+      return { caption: 'What a run is asked for is the same in all basins: see the plot to the best one.' };
+    }
+    const { list, numOverlapped } = instances(measure, kind);
     const solvers = solversOf(list);
     const ratios = new Map(solvers.map(solver => [solver, []]));
     let unsolved = 0;
@@ -140,7 +165,7 @@ function profilePlot(settings) {
       // A start that is there already costs 0: one unit then stands for nothing.
       const floor = kAlong[measure].isTime ? 1e-9 : 1;
       const costs = solvers.map(solver =>
-        runs.has(solver) ? Math.max(costOf(runs.get(solver), target, measure) ?? Infinity, floor)
+        runs.has(solver) ? Math.max(costOf(runs.get(solver), target, measure, own) ?? Infinity, floor)
                          : Infinity);
       const best = Math.min(...costs);
       if (best === Infinity) unsolved += 1;
@@ -155,7 +180,7 @@ function profilePlot(settings) {
       `solver brings to ${targetText(target)} with at most tau times the ` +
       `${manyOf(measure)} of the best solver there. ` +
       failureText(list.flatMap(runs => [...runs.values()])) +
-      ` ${counted(unsolved, 'instance')} solved by none count for all. A profile of more than two ` +
+      basinText(own) + ` ${counted(unsolved, 'instance')} solved by none count for all. A profile of more than two ` +
       'solvers is no order of any two: filter to a pair for that.' +
       excludedText([[numOverlapped, 'timed while other runs went on (overlapped)']]);
     return shareSpec({ width, solvers, data, caption, logX: true,
@@ -165,14 +190,14 @@ function profilePlot(settings) {
 }
 
 // Hansen et al., COCO, 2021: share of (instance, target) pairs reached within a budget.
-function runtimePlot(settings) {
-  return new Plot('Runtime distribution', width => {
+function runtimePlot(settings, kind, own) {
+  return new Plot(profileTitle('Runtime distribution', kind, own), width => {
     const { measure } = settings;
-    const { list, numOverlapped } = instances(measure);
+    const { list, numOverlapped } = instances(measure, kind);
     const solvers = solversOf(list);
     const least = kAlong[measure].isTime ? 1e-7 : 1;
     const times = new Map(solvers.map(solver => [solver, list.flatMap(runs =>
-      runs.has(solver) ? kTargets.map(target => costOf(runs.get(solver), target, measure))
+      runs.has(solver) ? kTargets.map(target => costOf(runs.get(solver), target, measure, own))
         .filter(cost => isNumber(cost)).map(cost => Math.max(cost, least)) : [])]));
     const all = [...times.values()].flat();
     const longest = Math.max(2 * least, ...all);
@@ -181,7 +206,7 @@ function runtimePlot(settings) {
       steps(solver, times.get(solver), list.length * kTargets.length, shortest, longest * 1.2));
     const caption = `Share of ${counted(list.length * kTargets.length, 'pair')} of an instance and a ` +
       `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${manyOf(measure)}. ` +
-      failureText(list.flatMap(runs => [...runs.values()])) +
+      failureText(list.flatMap(runs => [...runs.values()])) + basinText(own) +
       excludedText([[numOverlapped, 'timed while other runs went on (overlapped)']]);
     return shareSpec({ width, solvers, data, caption, logX: true, x: kAlong[measure].title,
                        y: 'share of instances and targets' });
@@ -202,6 +227,7 @@ function steps(solver, values, total, begin, end) {
 
 function shareSpec({ width, solvers, data, caption, logX, x, y }) {
   if (data.length === 0) return { caption };
+  putMarks(data);
   return {
     caption, data, zooms: true, logs: { px: logX, py: false },
     columns: { solver: 'solver', px: x, py: y },

@@ -10,6 +10,12 @@ function setScheme() {
     'Colours: ' + (wantedScheme === 'system' ? 'as the system' : wantedScheme);
 }
 
+// Vega's shapes around (17, 5).
+const kMarkPaths = {
+  square: 'M13.5 1.5h7v7h-7z', 'triangle-up': 'M17 .5l4.5 8.5h-9z', diamond: 'M17 0l5 5-5 5-5-5z',
+  'triangle-down': 'M17 9.5l-4.5-8.5h9z', cross: 'M15.3 .5h3.4v2.8h2.8v3.4h-2.8v2.8h-3.4v-2.8h-2.8v-3.4h2.8z',
+  circle: 'M13 5a4 4 0 1 0 8 0a4 4 0 1 0-8 0z',
+};
 function swatch(solver) {
   const dash = lookOf(solver, kDashes);
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
@@ -21,6 +27,12 @@ function swatch(solver) {
                   'stroke-dasharray': dash[1] === 0 ? 'none' : dash.join(' ') };
   for (const [name, value] of Object.entries(shape)) line.setAttribute(name, value);
   svg.append(line);
+  if (isMarked(solver)) {
+    const mark = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+    mark.setAttribute('d', kMarkPaths[lookOf(solver, kShapes)]);
+    mark.setAttribute('fill', colourOf(solver));
+    svg.append(mark);
+  }
   return svg;
 }
 

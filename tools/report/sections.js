@@ -87,8 +87,11 @@ function addConvergence() {
 function addProfiles() {
   const hasTraces = rows.some(traceOf);
   const settings = { measure: 'iteration', target: hasTraces ? 1e-6 : 'stop' };
-  const profile = profilePlot(settings), runtime = runtimePlot(settings);
-  const refresh = () => { profile.refresh(); runtime.refresh(); };
+  // Per kind of parameters; where there are several minima those to the own basin beside.
+  const plots = allKinds.flatMap(kind => (hasBasins(kind) ? [false, true] : [false])
+    .map(own => ({ kind, pair: [profilePlot(settings, kind, own),
+                                ...(hasTraces ? [runtimePlot(settings, kind, own)] : [])] })));
+  const refresh = () => plots.forEach(({ pair }) => pair.forEach(plot => plot.refresh()));
   const targets = [['stop', 'what the run was asked for'],
                    ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t.toExponential()}`]) : [])];
   const controls = element('div', { class: 'row' },
@@ -101,8 +104,12 @@ function addProfiles() {
       refresh();
     }));
   const few = element('p', {}, 'Profiles need two problems or more.');
-  const box = element('div', {}, controls, element('div', { class: 'plots' }, profile.figure,
-                      hasTraces ? runtime.figure : null));
+  const box = element('div', {}, controls, element('div', { class: 'plots' },
+    ...allKinds.flatMap(kind => {
+      const pairs = plots.filter(plot => plot.kind === kind).map(({ pair }) => pair);
+      // Best and own basin side by side.
+      return pairs[0].flatMap((_, k) => pairs.map(pair => pair[k].figure));
+    })));
   addSection('Profiles', element('div', {}, few, box), () => {
     const isMany = new Set(chosen.map(row => row.group)).size >= 2;
     few.hidden = isMany;
@@ -145,8 +152,18 @@ function runsContent() {
   return [sortableTable(columns, chosen, { name: 'runs', page: 20 }), details];
 }
 
+function findingTexts(row) {
+  const texts = {
+    claim_fails: row.failure ? '' : `it claims ${row.stop}, and |g| at its end is ${show(row.gradient_norm)}`,
+    ignores_stop: `it ignores stop: ${show(row.calls_past_stop)} calls after it was told`,
+    no_finite_end: 'its end is no finite number',
+  };
+  return Array.isArray(row.findings) ? row.findings.map(finding => texts[finding] ?? '') : [];
+}
+
 function failuresContent() {
-  const list = chosen.filter(row => row.verdict === 'failed' || row.verdict === 'refuted');
+  const list = chosen.filter(row => row.verdict === 'failed' || row.verdict === 'refuted' ||
+                                    (row.findings ?? []).length > 0);
   const skipped = chosen.filter(row => row.verdict === 'skipped');
   if (list.length + skipped.length === 0) return element('p', {}, 'None of these runs failed.');
   const logCell = row => {
@@ -159,7 +176,8 @@ function failuresContent() {
     { field: 'verdict', title: 'verdict', text: true, cell: verdictCell },
     { field: 'stop', title: 'stop', text: true },
     { field: 'why', title: 'message', text: true }, { field: 'key', title: 'log', text: true, cell: logCell }];
-  const why = row => [row.message, row.failure, row.disagreement].filter(Boolean).map(textOf).join('; ');
+  const why = row => [row.message, row.failure, row.disagreement, ...findingTexts(row)]
+    .filter(Boolean).map(textOf).join('; ');
   const withWhy = some => some.map(row => ({ ...row, why: why(row) }));
   return [
     list.length > 0 ? sortableTable(columns, withWhy(list), { name: 'failures', page: 20 })
@@ -177,9 +195,11 @@ function auditContent() {
   }));
   const failed = audited.filter(row => !row.verified).length;
   const disagree = chosen.filter(row => row.disagreement).length;
+  const belied = chosen.filter(row => row.verified !== false && finds(row, 'claim_fails')).length;
   const unaudited = chosen.length - audited.length;
   const text = `${counted(audited.length, 'run')} audited, ${failed} of them refuted; ` +
-    `${disagree} claim a minimum that is not the direct answer; ${unaudited} not audited ` +
+    `${disagree} claim a minimum that is not the direct answer; ${belied} are ` +
+    `belied by |g| of their own terms, which the audit does not know all; ${unaudited} not audited ` +
     '(skipped, or with terms that the audit does not know). The audit is a plain evaluator that ' +
     'shares no code with the solvers.';
   const columns = [
