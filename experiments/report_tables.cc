@@ -156,6 +156,19 @@ bool ReadReportPictures(const std::string& folder, const ReportLimits& limits,
     }
     bytes += svg.size();
     pictures->push_back({{"name", name}, {"svg", std::move(svg)}});
+    // What is plotted: of some figures there is none, and a picture without it still serves.
+    const std::string path = InFolder(folder, fs::path(name).stem().string() + ".dat");
+    std::error_code failure;
+    const std::uintmax_t size = fs::file_size(path, failure);
+    if (failure) continue;
+    if (bytes + size > limits.picture_bytes) {
+      notes->push_back(name + ": what it plots is not in the page, which would grow too large");
+      continue;
+    }
+    std::string data;
+    if (!ReadWholeFile(path, &data, error)) return false;
+    bytes += data.size();
+    pictures->back()["data"] = std::move(data);
   }
   return true;
 }

@@ -16,8 +16,9 @@ bool ReadReportTables(const std::string& folder, const std::vector<std::string>&
                       const ReportLimits& limits, nlohmann::ordered_json* tables,
                       std::vector<std::string>* notes, std::string* error);
 
-/// The SVG files that stand in `folder` itself: a list of {"name", "svg"}; those beyond the limit
-/// are named in the notes.
+/// The SVG files that stand in `folder` itself: a list of {"name", "svg", "data"}, the last the
+/// file NAME.dat that was plotted, where there is one; what is beyond the limit is named in the
+/// notes.
 bool ReadReportPictures(const std::string& folder, const ReportLimits& limits,
                         nlohmann::ordered_json* pictures, std::vector<std::string>* notes,
                         std::string* error);

@@ -245,6 +245,7 @@ TEST_F(ReportDocumentTest, NamesTheLineOfABrokenIterate) {
 TEST_F(ReportDocumentTest, ReadsTablesPicturesAndVerdictsOfAReproduction) {
   Write("order.csv", "# batten reproduce p order\n# tables:\nsolver,rate\ncg,0.5\n");
   Write("order.svg", "<svg/>");
+  Write("order.dat", "1 0.5\n");
   Write("p.md",
         "# The paper\n\n## Verdicts\n\n| a | b | c |\n\n## Order\n\nText.\n\n"
         "> superlinear (Sec. 3)\n\n**does not hold**: the error falls by 0.5  \nRule: last rate\n\n"
@@ -254,6 +255,7 @@ TEST_F(ReportDocumentTest, ReadsTablesPicturesAndVerdictsOfAReproduction) {
   EXPECT_EQ(summary["tables"][0]["columns"], json::parse("[\"solver\", \"rate\"]"));
   EXPECT_EQ(summary["tables"][0]["rows"], json::parse("[[\"cg\", \"0.5\"]]"));
   EXPECT_EQ(summary["pictures"][0]["svg"], "<svg/>");
+  EXPECT_EQ(summary["pictures"][0]["data"], "1 0.5\n");
   const json section = summary["pages"][0]["sections"][1];
   EXPECT_EQ(section["claims"][0]["quote"], "superlinear (Sec. 3)");
   EXPECT_EQ(section["claims"][0]["verdict"], "does not hold");
@@ -261,6 +263,19 @@ TEST_F(ReportDocumentTest, ReadsTablesPicturesAndVerdictsOfAReproduction) {
   EXPECT_EQ(section["claims"][0]["rule"], "last rate");
   EXPECT_EQ(section["pictures"][0]["caption"], "The error.");
   EXPECT_EQ(section["tables"], json::parse("[\"order.csv\"]"));
+}
+
+TEST_F(ReportDocumentTest, LeavesOutTheDataOfAPictureThatIsTooLargeAndSaysSo) {
+  Write("t.csv", "a\n1\n");
+  Write("a.svg", "<svg/>");
+  Write("a.dat", std::string(100, '1'));
+  Write("b.svg", "<svg/>");
+  limits_.picture_bytes = 50;
+  ASSERT_TRUE(Read()) << error_;
+  const json pictures = Summary()["pictures"];
+  ASSERT_EQ(pictures.size(), 2u);
+  EXPECT_FALSE(pictures[0].contains("data"));
+  EXPECT_THAT(Summary()["notes"][0].get<std::string>(), HasSubstr("a.svg: what it plots is not"));
 }
 
 TEST_F(ReportDocumentTest, NamesTheRowOfATableThatIsTooShort) {

@@ -12,8 +12,7 @@ function addFolderSections() {
   }
   if (pictures.size > 0) {
     addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
-      pictureOf(picture, `As drawn when the folder was written; what is plotted stands in ` +
-                         `${picture.name.replace(/\.svg$/, '.dat')} beside it.`))));
+      pictureOf(picture, 'As drawn when the folder was written. Data: what is plotted, in blocks, a line each.'))));
   }
   if (tables.size > 0) {
     addSection('Tables', element('div', {}, ...[...tables.values()].map(table =>
@@ -56,23 +55,64 @@ function addPage(page, pictures, tables) {
   addSection('Experiments' + of, element('div', {}, ...experiments));
 }
 
-// As an image: scripts in a picture do not run.
+// As an image: scripts in a picture do not run. Zoomed by its width in a box that scrolls; vectors
+// stay sharp.
 function pictureOf(picture, caption = '') {
   const source = 'data:image/svg+xml;charset=utf-8,' + encodeURIComponent(picture.svg);
-  const save = element('button', { type: 'button', onclick: () =>
-    download(picture.name, picture.svg, 'image/svg+xml') }, 'SVG');
-  const savePng = element('button', { type: 'button', onclick: event => {
-    const image = event.target.closest('figure').querySelector('img');
-    const canvas = element('canvas', { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
-    const context = canvas.getContext('2d');
-    context.fillStyle = '#fff';
-    context.fillRect(0, 0, canvas.width, canvas.height);
-    context.drawImage(image, 0, 0, canvas.width, canvas.height);
-    download(picture.name.replace(/\.svg$/, '.png'), canvas.toDataURL('image/png'), 'image/png');
-  } }, 'PNG');
-  return element('figure', {}, element('h3', {}, picture.name),
-    element('img', { src: source, alt: caption || `Picture ${picture.name}`, loading: 'lazy' }),
-    element('div', { class: 'row' }, save, savePng), element('figcaption', {}, caption));
+  const image = element('img', { src: source, alt: caption || `Picture ${picture.name}`,
+                                 loading: 'lazy', draggable: 'false' });
+  let scale = 1;
+  const box = element('div', { class: 'picture', tabindex: 0, role: 'group',
+    'aria-label': `${picture.name}. Keys: plus and minus zoom, arrows move, 0 shows all.` }, image);
+  // The point of the picture in the middle of the box, or under the pointer, stays where it is.
+  const zoom = (factor, x = box.clientWidth / 2, y = box.clientHeight / 2) => {
+    const next = Math.min(16, Math.max(1, scale * factor)), ratio = next / scale;
+    const [left, top] = [(box.scrollLeft + x) * ratio - x, (box.scrollTop + y) * ratio - y];
+    // Its height stays, so that the page does not jump.
+    box.style.height = next > 1 ? `${box.style.height ? box.clientHeight + 2 : box.offsetHeight}px` : '';
+    scale = next;
+    image.style.width = scale > 1 ? `${100 * scale}%` : '';
+    image.style.maxWidth = scale > 1 ? 'none' : '';
+    box.scrollTo(left, top);
+  };
+  const move = (x, y) => box.scrollBy(x * box.clientWidth, y * box.clientHeight);
+  const keys = { '+': () => zoom(1.6), '=': () => zoom(1.6), '-': () => zoom(1 / 1.6), 0: () => zoom(0),
+                 ArrowLeft: () => move(-0.15, 0), ArrowRight: () => move(0.15, 0),
+                 ArrowUp: () => move(0, -0.15), ArrowDown: () => move(0, 0.15) };
+  box.addEventListener('keydown', event => {
+    if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in keys)) return;
+    if (scale === 1 && event.key.startsWith('Arrow')) return;  // scrolls the page
+    keys[event.key]();
+    event.preventDefault();
+  });
+  box.addEventListener('wheel', event => {
+    if (!event.ctrlKey) return;
+    const place = box.getBoundingClientRect();
+    zoom(event.deltaY < 0 ? 1.25 : 0.8, event.clientX - place.left, event.clientY - place.top);
+    event.preventDefault();
+  }, { passive: false });
+  box.addEventListener('dblclick', () => zoom(0));
+  box.addEventListener('pointermove', event => {
+    if (event.buttons === 1 && event.pointerType === 'mouse') box.scrollBy(-event.movementX, -event.movementY);
+  });
+  const button = (text, onclick, label) => element('button', { type: 'button', onclick, 'aria-label': label }, text);
+  const data = picture.data === undefined ? null : button('Data', () =>
+    download(picture.name.replace(/\.svg$/, '.dat'), picture.data, 'text/plain'));
+  return element('figure', {}, element('h3', {}, picture.name), box,
+    element('div', { class: 'row' }, button('+', () => zoom(1.6), 'Zoom in'),
+      button('−', () => zoom(1 / 1.6), 'Zoom out'), button('Show all', () => zoom(0)), data,
+      button('SVG', () => download(picture.name, picture.svg, 'image/svg+xml')),
+      button('PNG', () => savePicturePng(image, picture.name))),
+    element('figcaption', {}, caption));
+}
+
+function savePicturePng(image, name) {
+  const canvas = element('canvas', { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
+  const context = canvas.getContext('2d');
+  context.fillStyle = '#fff';
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(image, 0, 0, canvas.width, canvas.height);
+  download(name.replace(/\.svg$/, '.png'), canvas.toDataURL('image/png'), 'image/png');
 }
 
 function folderTable(table) {
