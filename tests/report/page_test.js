@@ -33,6 +33,7 @@
     }
     if (rows.length > 0) await testRuns();
     if (doc.pages.length > 0) testReproduction();
+    await testPictures();
   } catch (error) {
     expect('no exception: ' + error.stack, false);
   }
@@ -57,6 +58,10 @@
       expect(`${plot.title}: values`, plot.table.querySelectorAll('tbody tr').length > 0);
       plot.toggleTable();
     }
+    testVerdicts();
+    testLooks();
+    testProfiles();
+    if (doc.bench_notes.length > 0) await testBench();
     await testZoom();
     await testChoices();
     await testFilters();
@@ -71,6 +76,70 @@
     const colours = new Set();
     for (let k = 0; k < data.length; k += 4) colours.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
     return colours.size > 5;
+  }
+
+  function testVerdicts() {
+    const belied = rows.filter(row => (row.findings ?? []).includes('claim_fails') && row.stop !== 'skipped');
+    expect('what bench finds belied is refuted', belied.every(row => row.verdict === 'refuted'));
+    if (doc.name === 'made_up') expect('some runs are belied', belied.length > 0);
+    const failures = document.querySelector('#failures').textContent;
+    expect('and stands under Failures', belied.length === 0 || failures.includes('refuted'));
+  }
+
+  function testLooks() {
+    const looks = new Set(allSolvers.map(solver => colourOf(solver) + lookOf(solver, kDashes)));
+    expect('solvers look different', looks.size === Math.min(allSolvers.length, 48));
+    const marked = allPlots.flatMap(plot => plot.drawn.data ?? []).filter(row => row.mark);
+    expect('those beyond the first eight have marks', allSolvers.length <= 8
+      ? marked.length === 0 : marked.length > 0 && marked.every(row => allSolvers.indexOf(row.solver) >= 8));
+  }
+
+  // Of each kind of parameters, with the solvers that apply to it alone.
+  function testProfiles() {
+    const kinds = [...new Set(rows.map(row => row.parameter_kind).filter(Boolean))];
+    for (const plot of allPlots.filter(p => p.title.startsWith('Performance profile') && p.drawn.data)) {
+      const kind = kinds.find(name => plot.title.includes(` ${name} parameters`));
+      if (kind === undefined) continue;
+      const applying = new Set(rows.filter(row => row.parameter_kind === kind && row.stop !== 'skipped')
+        .map(row => row.solver));
+      const drawn = new Set(plot.drawn.data.map(row => row.solver));
+      expect(`${plot.title}: the solvers that apply`, drawn.size === applying.size &&
+        [...drawn].every(solver => applying.has(solver)));
+    }
+    expect('a profile for each kind of parameters', kinds.every(kind =>
+      allPlots.some(plot => plot.title.startsWith(`Performance profile, ${kind} parameters`))));
+  }
+
+  // Whoever comes to the best minimum has come to its own one.
+  async function testBench() {
+    expect('the notes are there', document.querySelector('#notes_of_the_benchmark').textContent
+      .includes('cells are finished'));
+    const shares = (what, basin) => allPlots.filter(plot => plot.title.startsWith(what) && plot.title.endsWith(basin))
+      .map(plot => new Map((plot.drawn.data ?? []).map(row => [row.solver, row.py])));  // the last of each
+    const best = shares('Runtime distribution', 'best basin'), own = shares('Runtime distribution', 'own basin');
+    expect('own basins stand beside best ones', best.length > 0 && best.length === own.length);
+    expect('own basins are reached more often', own.every((of, k) =>
+      [...of].every(([solver, share]) => share >= (best[k].get(solver) ?? 0))) &&
+      own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0))));
+    const hasCurve = row => row.key in curves().runs;
+    expect('each first repetition has its curve, and no other', rows.every(row =>
+      hasCurve(row) === (row.repetition === 1 && typeof row.iterations === 'number')));
+    expect('from the start to the end', rows.filter(hasCurve).every(row => {
+      const { iterations } = curves().runs[row.key];
+      return iterations[0] === 0 && iterations.at(-1) === row.iterations;
+    }));
+    const plot = allPlots.find(p => p.title === 'Curves side by side');
+    const choice = document.querySelector('#player select');
+    expect('the player has all instances', choice.options.length === doc.groups.length);
+    for (const option of choice.options) {
+      change(choice, option.value);
+      await settled();
+      const solvers = new Set(plot.drawn.data.filter(row => row.kind === 'curve').map(row => row.solver));
+      const number = rows.filter(row => String(row.group) === option.value && hasCurve(row)).length;
+      expect(`the player shows ${option.textContent}`, solvers.size === Math.min(number, kMostPanels));
+    }
+    change(choice, choice.options[0].value);
+    await settled();
   }
 
   async function testZoom() {
@@ -208,12 +277,41 @@
     expect('nothing takes the focus out of order', all('[tabindex]').every(node => node.tabIndex <= 0));
   }
 
+  async function testPictures() {
+    const saved = [], usual = window.download;
+    window.download = (name, content) => saved.push([name, content]);
+    const figures = all('figure').filter(figure => figure.querySelector('.picture'));
+    expect('each picture is shown once', figures.length === doc.pictures.length);
+    for (const figure of figures) {
+      const picture = doc.pictures.find(({ name }) => name === figure.querySelector('h3').textContent);
+      const box = figure.querySelector('.picture'), image = box.querySelector('img');
+      image.loading = 'eager';
+      await image.decode();
+      const press = key => box.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
+      const width = () => image.getBoundingClientRect().width, before = width(), place = box.offsetHeight;
+      press('+');
+      press('+');
+      expect(`${picture.name}: + zooms in`, width() > 1.5 * before && Math.abs(box.offsetHeight - place) <= 1);
+      const left = box.scrollLeft;
+      press('ArrowRight');
+      expect(`${picture.name}: arrows move`, box.scrollLeft > left);
+      press('0');
+      expect(`${picture.name}: 0 shows all`, Math.abs(width() - before) <= 1);
+      const button = [...figure.querySelectorAll('button')].find(b => b.textContent === 'Data');
+      button?.click();
+      expect(`${picture.name}: its data`, (button !== undefined) === (picture.data !== undefined) &&
+        (!button || (saved.at(-1)[0].endsWith('.dat') && saved.at(-1)[1] === picture.data)));
+    }
+    window.download = usual;
+  }
+
   function testReproduction() {
     expect('each claim has its verdict', all('#verdicts tbody tr').length ===
       doc.pages[0].sections.reduce((sum, section) => sum + section.claims.length, 0));
     expect('verdicts are those of the page', doc.pages[0].sections.every(section => section.claims.every(claim =>
       ['holds', 'holds in part', 'does not hold', 'undecided'].includes(claim.verdict) && claim.rule !== '')));
     expect('pictures are put in', all('img').every(image => image.src.startsWith('data:')));
+    expect('what is plotted is there', doc.pictures.every(picture => picture.data?.length > 0));
     expect('tables are shown', all('#experiments table, #tables table').length >= doc.tables.length);
   }
 })();
