@@ -166,8 +166,13 @@ function looksOf(solvers, channel, looks) {
   return { field: 'solver', type: 'nominal', title: null,
            scale: { domain: solvers, range: solvers.map(solver => lookOf(solver, looks)) } };
 }
+// So many names stand side by side, each behind its line: 7 pixels a letter.
+function legendColumns(solvers, width) {
+  const longest = solvers.reduce((most, solver) => Math.max(most, solver.length), 0);
+  return Math.max(1, Math.min(solvers.length, Math.floor(width / Math.min(280, 55 + 7 * longest))));
+}
 function colours(solvers, width) {
-  const columns = Math.max(1, Math.min(solvers.length, Math.floor(width / 170)));
+  const columns = legendColumns(solvers, width);
   return { field: 'solver', type: 'nominal', title: null,
            scale: { domain: solvers, range: solvers.map(colourOf) },
            legend: { orient: 'bottom', columns, symbolType: 'stroke', symbolSize: 900 } };
@@ -218,7 +223,7 @@ function dotSpec({ width, height, solvers, x, y, tooltip }) {
 }
 const heightFor = (width, solvers) =>
   Math.round(Math.min(420, Math.max(260, width * 0.55)) +
-             20 * Math.ceil(solvers.length / Math.max(1, Math.floor(width / 170))));
+             25 * Math.ceil(solvers.length / legendColumns(solvers, width)));
 
 // Some marks on each line of solvers beyond the first eight, those of different lines apart.
 function putMarks(points) {
