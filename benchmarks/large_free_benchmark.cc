@@ -1,7 +1,8 @@
 // Large fits with free parameters from a circle: iterations, seconds and memory to gaps of 1e-6 and
 // 1e-10 to the lowest E that any of the methods finds, without a guard against loops and with one.
 // Each run has a process of its own, so that its peak memory is its own. Prints a Markdown table.
-//   large_free_benchmark [SECONDS] [THREADS]   most seconds per run (120), threads (2)
+//   large_free_benchmark [SECONDS] [THREADS] [METHOD...]
+// most seconds per run (120), threads (2), methods (all of kMethods: 24 runs)
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -23,6 +24,9 @@ namespace batten {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr const char* kMethods[] = {"foot_newton", "newton",       "lm_schur",
+                                    "tdm",         "anderson:pdm", "lbfgs"};
 
 struct Case {
   int points;
@@ -158,10 +162,11 @@ std::string Reached(const Measured& measured, double minimum, double gap) {
   return "-";
 }
 
-void Measure(const Case& which, double most_seconds, int threads) {
+void Measure(const Case& which, const std::vector<std::string>& methods, double most_seconds,
+             int threads) {
   std::vector<Measured> all;
   double minimum = kInfinity;
-  for (const char* solver : {"foot_newton", "newton", "lm_schur", "tdm", "anderson:pdm", "lbfgs"}) {
+  for (const std::string& solver : methods) {
     all.push_back(RunAlone(which, solver, most_seconds, threads));
     minimum = std::min(minimum, all.back().trace.back().energy);
   }
@@ -183,6 +188,8 @@ void Measure(const Case& which, double most_seconds, int threads) {
 int main(int argc, char** argv) {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 120.0;
   const int threads = argc > 2 ? std::atoi(argv[2]) : 2;
+  std::vector<std::string> methods(argv + std::min(argc, 3), argv + argc);
+  if (methods.empty()) methods.assign(std::begin(batten::kMethods), std::end(batten::kMethods));
   std::printf(
       "# Large fits with free parameters\n\nA closed cubic from a circle around a noisy loop, %d "
       "threads, at most %g s a run. Gaps are to the lowest E of the same problem in this table.\n\n"
@@ -193,7 +200,7 @@ int main(int argc, char** argv) {
   using batten::Case;
   for (const Case which : {Case{100'000, 100, ""}, Case{100'000, 100, "bending"},
                            Case{1'000'000, 1000, ""}, Case{1'000'000, 1000, "bending"}}) {
-    batten::Measure(which, seconds, threads);
+    batten::Measure(which, methods, seconds, threads);
   }
   return 0;
 }
