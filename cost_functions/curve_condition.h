@@ -26,7 +26,7 @@ struct CurveCondition {
   bool is_inequality = false;   ///< h >= 0 instead of h = 0.
   double t = 0.0;               ///< Where it is given.
   int parameter_variable = -1;  ///< Place of t in x; -1: it is given.
-  int order = 0;                ///< 0 or 1.
+  int order = 0;                ///< 0 to 2.
   double direction[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
   double value = 0.0;
   double unit = 1.0;

@@ -66,7 +66,7 @@ struct AuditedEquation {
 /// A constraint that is not linear, or an inequality, at one parameter.
 struct AuditedCondition {
   enum class Kind : char {
-    kPoint,     ///< C(t) = value in the coordinates that are finite there.
+    kPoint,     ///< C^(order)(t) = value in the coordinates that are finite there.
     kTangent,   ///< C'(t) along the unit vector `value`, at least `amount` / length of the domain.
     kCurvature  ///< Of C at t is `amount`, signed in the plane.
   };
@@ -76,6 +76,7 @@ struct AuditedCondition {
   std::vector<double> value;  ///< d
   double amount = 0.0;
   double unit = 1.0;  ///< Of a curvature: what its difference is multiplied by to be a length.
+  int order = 0;      ///< Of the derivative that kPoint holds.
 };
 
 /// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code

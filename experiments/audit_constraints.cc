@@ -73,10 +73,13 @@ struct Missed {
 Missed MissPoint(const AuditedFit& fit, const AuditedCondition& condition,
                  const std::vector<Real>& data_sizes, AuditCurve* curve) {
   Missed missed;
-  const std::vector<Real> point = Derivative(fit, 0, data_sizes, curve, &missed.rounding);
+  const std::vector<Real> point =
+      Derivative(fit, condition.order, data_sizes, curve, &missed.rounding);
+  const Real unit = std::pow(curve->domain_end() - curve->domain_begin(), condition.order);
+  missed.rounding *= unit;
   for (std::size_t c = 0; c < point.size(); ++c) {
     if (!std::isfinite(condition.value[c])) continue;
-    const Real off = std::abs(point[c] - condition.value[c]);
+    const Real off = unit * std::abs(point[c] - condition.value[c]);
     if (!(off <= missed.length)) missed.length = off;
   }
   return missed;

@@ -66,8 +66,7 @@ class ConstraintWriter {
     return options;
   }
   static bool IsFree(const NameSpec& spec, const OptionValues& options) {
-    const bool may_be = spec.name == "point" || spec.name == "tangent" || spec.name == "curvature";
-    return may_be && options.Integer("free") > 0;
+    return IsAtAParameter(spec.name) && options.Integer("free") > 0;
   }
 
   std::size_t dimension() const { return static_cast<std::size_t>(plain_->dimension); }
@@ -169,8 +168,9 @@ class ConstraintWriter {
     condition.name = spec.ToString();
     condition.t = ParameterOf(spec, options);
     const double size = fit_.size();
-    if (spec.name == "point") {
+    if (spec.name == "point" || spec.name == "derivative") {
       condition.value = Given(options);
+      if (spec.name == "derivative") condition.order = options.Integer("order");
     } else if (spec.name == "tangent") {
       condition.kind = AuditedCondition::Kind::kTangent;
       condition.amount = options.Real("least") * size;

@@ -24,13 +24,13 @@ class ConditionBuilder {
   int free_number() const { return options_.Integer("free"); }
   double given_t() const { return options_.Real("t"); }
 
-  /// A point at a given parameter is linear: no condition comes of it.
+  /// A point or a derivative at a given parameter is linear: no condition comes of it.
   bool Build(std::vector<CurveCondition>* conditions) const {
     CurveCondition condition;
     condition.name = spec_.ToString();
     if (!PlaceAt(&condition)) return false;
-    if (spec_.name == "point") {
-      return free_number() == 0 || AddPoint(condition, conditions);
+    if (spec_.name == "point" || spec_.name == "derivative") {
+      return free_number() == 0 || AddCoordinates(condition, conditions);
     }
     if (spec_.name == "tangent") return AddTangent(condition, conditions);
     return AddCurvature(condition, conditions);
@@ -63,20 +63,37 @@ class ConditionBuilder {
                   std::to_string(fit_.dimension()));
   }
 
-  bool AddPoint(const CurveCondition& condition, std::vector<CurveCondition>* conditions) const {
+  /// Of C, or of a derivative, which counts by the parameter normalised to [0, 1].
+  bool AddCoordinates(CurveCondition condition, std::vector<CurveCondition>* conditions) const {
     Eigen::RowVectorXd given;
     if (!GiveCoordinates(&given)) return false;
+    if (spec_.name == "derivative" && !TakeOrder(&condition)) return false;
     bool any = false;
     const FitSetting& setting = fit_.setting();
+    const double unit = std::pow(fit_.basis().domain_length(), condition.order);
     for (int c = 0; c < fit_.dimension(); ++c) {
       if (given[c] == kNotGiven) continue;
       any = true;
       CurveCondition of_coordinate = condition;
-      of_coordinate.direction[c] = 1.0;
-      of_coordinate.value = (given[c] - setting.center[c]) * setting.scale;
+      of_coordinate.direction[c] = unit;
+      const double origin = condition.order == 0 ? setting.center[c] : 0.0;
+      of_coordinate.value = unit * (given[c] - origin) * setting.scale;
       conditions->push_back(std::move(of_coordinate));
     }
     return any || Refuse("holds nothing; give at least one of x, y, z, w");
+  }
+
+  /// A third derivative would need five of the basis functions, and has no use but its own.
+  bool TakeOrder(CurveCondition* condition) const {
+    condition->order = options_.Integer("order");
+    constexpr int kMost = 2;
+    if (condition->order > kMost) {
+      return Refuse("has order " + std::to_string(condition->order) +
+                    " at a parameter that is found; allowed: 1 or 2");
+    }
+    return condition->order <= fit_.basis().degree() ||
+           Refuse("needs degree " + std::to_string(condition->order) + " or more; found " +
+                  std::to_string(fit_.basis().degree()));
   }
 
   /// Derivatives count by the parameter normalised to [0, 1].
@@ -176,7 +193,7 @@ bool MakeCurveConditions(const std::vector<NameSpec>& specs, const CurveFit& fit
   };
   std::map<int, FreeParameter> free;
   for (const NameSpec& spec : specs) {
-    if (spec.name != "point" && spec.name != "tangent" && spec.name != "curvature") continue;
+    if (!IsAtAParameter(spec.name)) continue;
     OptionValues options;
     if (!ResolveConstraint(spec, &options, error)) return false;
     const ConditionBuilder builder(fit, spec, options, error);

@@ -48,10 +48,6 @@ struct Functional {
   bool value_is_a_point = false;  ///< Else a derivative, which moving the origin does not change.
 };
 
-bool IsAtAParameter(const std::string& name) {
-  return name == "point" || name == "tangent" || name == "curvature";
-}
-
 class Builder {
  public:
   Builder(const CurveFit& fit, const NameSpec& spec, OptionValues options, std::string* error)
@@ -272,6 +268,10 @@ class Builder {
 
 }  // namespace
 
+bool IsAtAParameter(const std::string& name) {
+  return name == "point" || name == "derivative" || name == "tangent" || name == "curvature";
+}
+
 bool ResolveConstraint(const NameSpec& spec, OptionValues* options, std::string* error) {
   std::vector<std::string> names;
   for (const ConstraintInfo& info : KnownConstraints()) {
@@ -292,8 +292,9 @@ std::vector<ConstraintInfo> KnownConstraints() {
       {"point", "the curve passes a point at a parameter",
        WithCoordinates({ParameterOption(), FreeOption()})},
       {"derivative", "a derivative at a parameter",
-       WithCoordinates({ParameterOption(), OptionInfo::Integer("order", 1, 1, kMaxDegree,
-                                                               "order of the derivative")})},
+       WithCoordinates({ParameterOption(), FreeOption(),
+                        OptionInfo::Integer("order", 1, 1, kMaxDegree,
+                                            "order of the derivative; with free at most 2")})},
       {"tangent", "the direction of the curve at a parameter",
        WithCoordinates({ParameterOption(), FreeOption(),
                         OptionInfo::Real("least", 1e-3, 1e-9, 1e9,

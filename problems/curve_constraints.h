@@ -22,7 +22,8 @@ class CurveFit;
 ///   clamped                       C' is Bessel's tangent at both ends (end=, x=, y=, ... as above)
 ///   not-a-knot                    C^(p) does not jump at the first and the last inner knot
 ///   periodic                      C^(k), k = 0..p - 1, is the same at both ends of an open curve
-/// t in the domain; lengths in the user's units. point, tangent and curvature also take free=N
+/// t in the domain; lengths in the user's units. point, tangent, curvature and derivative (of order
+/// 1 or 2) also take free=N
 /// instead of t: they hold at one parameter that is found, number N of the fit's, 1 to 99, the same
 /// for all constraints with this number; t, if it is given, is where it starts.
 struct ConstraintInfo {
@@ -56,6 +57,9 @@ struct CurveConditions {
 bool MakeCurveConditions(const std::vector<NameSpec>& specs, const CurveFit& fit, int num_variables,
                          const Eigen::VectorXd& control_points, CurveConditions* made,
                          std::string* error);
+
+/// Whether the constraint of this name holds at one parameter, which may be one that is found.
+bool IsAtAParameter(const std::string& name);
 
 /// Checked options of one of KnownConstraints(); false with one sentence in `error`.
 bool ResolveConstraint(const NameSpec& spec, OptionValues* options, std::string* error);

@@ -115,6 +115,9 @@ TEST(Audit, MeasuresConditionsAsLengths) {
   };
   EXPECT_EQ(missed({Kind::kPoint, "", 0.5, {2.5, 1.75}, 0, 1}), 0.5);
   EXPECT_EQ(missed({Kind::kPoint, "", 0.5, {kNan, 1.75}, 0, 1}), 0.125);
+  // C'(0.5) = (4.5, 0.75)
+  EXPECT_NEAR(missed({Kind::kPoint, "", 0.5, {4, kNan}, 0, 1, 1}), 0.5, kFewRoundings);
+  EXPECT_NEAR(missed({Kind::kPoint, "", 0.5, {4.5, 1.5}, 0, 1, 1}), 0.75, kFewRoundings);
   EXPECT_NEAR(missed({Kind::kTangent, "", 0.5, {1, 0}, 0.1, 1}), 0.75, kFewRoundings);
   EXPECT_NEAR(missed({Kind::kTangent, "", 0.5, {1, 0}, 6.0, 1}), 1.5, kFewRoundings);
   // The other way round it is as far below the least speed as it is fast.

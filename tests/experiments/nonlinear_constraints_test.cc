@@ -228,6 +228,31 @@ TEST(NonlinearConstraints, APointIsPassedAtAParameterThatIsFound) {
   }
 }
 
+TEST(NonlinearConstraints, ADerivativeIsMetAtAParameterThatIsFound) {
+  for (const Cubic& p : {PlaneCubic(), SpaceCubic()}) {
+    for (const int order : {1, 2}) {
+      SCOPED_TRACE(order);
+      const double s = 0.36;
+      const Eigen::VectorXd q = CubicAt(p, s)[order];
+      std::vector<std::function<double(const Cubic&, double)>> h;
+      std::string constraint = "derivative/free=3/t=0.3/order=" + std::to_string(order);
+      for (int c = 0; c < p.cols(); ++c) {
+        h.emplace_back(
+            [q, c, order](const Cubic& at, double t) { return CubicAt(at, t)[order][c] - q[c]; });
+        constraint += "/" + std::string(1, "xyz"[c]) + "=" + NumberText(q[c]);
+      }
+      const Eigen::VectorXd lambda = Eigen::Vector3d(0.02, -0.01, 0.015).head(p.cols());
+      const Points data = DataFor(p, s, true, kPlaces, h, lambda);
+      ExpectFinds(
+          p, data, kPlaces, constraint,
+          [q, order](const Cubic& at, double t) {
+            return (CubicAt(at, t)[order] - q).cwiseAbs().maxCoeff();
+          },
+          s);
+    }
+  }
+}
+
 TEST(NonlinearConstraints, OfOneNumberHoldAtOneParameter) {
   const Cubic p = PlaneCubic();
   const double s = 0.41;
@@ -384,6 +409,11 @@ TEST(NonlinearConstraints, ThatTheCurveCannotMeetAreRefused) {
   EXPECT_EQ(WhyNot(Constrained(3, 8, "curvature/t=0.5/kappa=-1"), 3),
             "constraint curvature/t=0.5/kappa=-1 needs kappa above 0: in space curvature has no "
             "sign, and a kink at 0");
+  EXPECT_EQ(WhyNot(Constrained(4, 8, "derivative/order=3/free=1/x=1")),
+            "constraint derivative/order=3/free=1/x=1 has order 3 at a parameter that is found; "
+            "allowed: 1 or 2");
+  EXPECT_EQ(WhyNot(Constrained(1, 8, "derivative/order=2/free=1/x=1")),
+            "constraint derivative/order=2/free=1/x=1 needs degree 2 or more; found 1");
   EXPECT_EQ(WhyNot(Constrained(3, 8, "point/free=1")),
             "constraint point/free=1 holds nothing; give at least one of x, y, z, w");
   EXPECT_EQ(WhyNot(Constrained(3, 8, "point/free=1/z=1")),
