@@ -9,14 +9,21 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 echo "undisturbed ..."
+began=$(date +%s.%N)
 "$batten" bench "$suite" --out="$folder/whole" --nofigures --quiet > /dev/null
+# Parts of it on average three quarters of a twentieth long, so that the last kill still hits.
+part=$(awk -v began="$began" -v now="$(date +%s.%N)" 'BEGIN { print (now - began) / 20 }')
 
 kills=0
 while [ "$kills" -lt 20 ]; do
   "$batten" bench "$suite" --out="$folder/killed" --nofigures --quiet > /dev/null 2>&1 &
   pid=$!
-  sleep "$(awk -v seed="$kills" 'BEGIN { srand(seed + 20261128); print 0.05 + 1.5 * rand() }')"
-  kill -9 "$pid" 2> /dev/null || true
+  sleep "$(awk -v seed="$kills" -v part="$part" \
+    'BEGIN { srand(seed + 20261128); print part * (0.25 + rand()) }')"
+  if ! kill -9 "$pid" 2> /dev/null; then
+    echo "kill $((kills + 1)) came too late" >&2
+    exit 1
+  fi
   wait "$pid" 2> /dev/null || true
   kills=$((kills + 1))
   echo "kill $kills: $(wc -l < "$folder/killed/cells.jsonl") lines"

@@ -261,7 +261,9 @@ bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
 std::string NearestName(const std::string& name, const std::vector<std::string>& known) {
   std::pair<int, std::string> nearest(INT_MAX, "");
   for (const std::string& candidate : known) {
-    const int distance = EditDistance(LowerCase(name), LowerCase(candidate));
+    // The beginning of a name stands for it, however much is missing.
+    const bool begins = !name.empty() && LowerCase(candidate).rfind(LowerCase(name), 0) == 0;
+    const int distance = begins ? 0 : EditDistance(LowerCase(name), LowerCase(candidate));
     if (distance < nearest.first) nearest = {distance, candidate};
   }
   return nearest.second;

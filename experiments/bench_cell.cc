@@ -106,6 +106,9 @@ void AddPlace(const BenchSuite& suite, const BenchCell& cell, Json* json) {
 void AddTruthChecks(const ComparisonRow& row, const RunSpec& spec, Json* json) {
   (*json)["stream"] = HexDigits(row.run.stream_hash);
   (*json)["stream_points"] = row.run.stream_points;
+  Json prefixes = Json::array();
+  for (const std::uint64_t hash : row.run.stream_prefixes) prefixes.push_back(HexDigits(hash));
+  (*json)["stream_prefixes"] = std::move(prefixes);
   (*json)["calls_past_stop"] = row.run.calls_past_stop;
   (*json)["findings"] = FlagsOf(row, spec);
   const std::string other = OptionsThatDiffer(row.run);

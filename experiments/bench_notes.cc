@@ -113,21 +113,42 @@ void NoteRuns(BenchResults* results) {
 }
 
 /// Solvers whose evaluations are the same, point by point, wherever both ran.
+bool IsCut(const BenchRun& run) {
+  const std::string stop = TextAt(*run.first, "stop");
+  return stop == "time_limit" || stop == "iteration_limit";
+}
+
+/// One evaluated at the points of the other; where a limit cut the shorter one, up to the last of
+/// 4, 8, 16, ... points that both have.
+bool HaveOneStream(const BenchRun& first, const BenchRun& second) {
+  const bool equal = TextAt(*first.first, "stream") == TextAt(*second.first, "stream");
+  if (equal || !(IsCut(first) || IsCut(second))) return equal;
+  const std::vector<std::string> a = TextsAt(*first.first, "stream_prefixes");
+  const std::vector<std::string> b = TextsAt(*second.first, "stream_prefixes");
+  const std::size_t common = std::min(a.size(), b.size());
+  // What ended by itself is to be the longer one.
+  const double of_first = NumberAt(*first.first, "stream_points");
+  const double of_second = NumberAt(*second.first, "stream_points");
+  if (!IsCut(of_first <= of_second ? first : second)) return false;
+  return common > 0 && a[common - 1] == b[common - 1];
+}
+
 void NoteTwins(BenchResults* results) {
   constexpr double kFewestPoints = 3.0;  // less is a start and an answer
-  std::map<std::size_t, std::map<std::pair<std::size_t, int>, std::string>> streams;  // by solver
+  using Streams = std::map<std::pair<std::size_t, int>, const BenchRun*>;
+  std::map<std::size_t, Streams> streams;  // by solver
   for (const BenchRun& run : results->runs) {
     if (!run.ran || !(NumberAt(*run.first, "stream_points") >= kFewestPoints)) continue;
-    streams[run.solver][{run.instance, run.solver_seed}] = TextAt(*run.first, "stream");
+    streams[run.solver][{run.instance, run.solver_seed}] = &run;
   }
   for (auto first = streams.begin(); first != streams.end(); ++first) {
     for (auto second = std::next(first); second != streams.end(); ++second) {
       int common = 0, equal = 0;
-      for (const auto& [place, stream] : first->second) {
+      for (const auto& [place, run] : first->second) {
         const auto other = second->second.find(place);
         if (other == second->second.end()) continue;
         ++common;
-        equal += other->second == stream ? 1 : 0;
+        equal += HaveOneStream(*run, *other->second) ? 1 : 0;
       }
       if (common == 0 || equal < common) continue;
       results->notes.push_back(results->solvers[first->first] + " and " +

@@ -1,9 +1,11 @@
 #include "experiments/regression.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "cost_functions/options.h"
 #include "experiments/comparison.h"
@@ -50,9 +52,24 @@ double Evaluations(const BenchRun& run) {
   return sum;
 }
 
-double CostOf(const BenchRun& run, bool of_time) {
-  return of_time ? Median(run.seconds) : Evaluations(run);
+/// What pairs of runs are compared by.
+enum class Measure { kEvaluations, kSeconds, kEnergyInTime };
+constexpr std::array kMeasures = {Measure::kEvaluations, Measure::kSeconds, Measure::kEnergyInTime};
+
+const char* ToString(Measure measure) {
+  switch (measure) {
+    case Measure::kEvaluations:
+      return "evaluations";
+    case Measure::kSeconds:
+      return "seconds";
+    case Measure::kEnergyInTime:
+      break;
+  }
+  return "E at the time limit";
 }
+
+/// Where a run was when its time was over depends on the machine's mood.
+bool EndsInTime(const BenchRun& run) { return TextAt(*run.first, "stop") == "time_limit"; }
 
 class Finder {
  public:
@@ -62,6 +79,12 @@ class Finder {
   }
 
   void Match(const BenchResults& before, const BenchResults& now) {
+    for (std::size_t t = 0; t < std::min(before.targets.size(), now.targets.size()); ++t) {
+      if (before.targets[t].label == now.targets[t].label && before.targets[t].gap > 0.0) {
+        targets_.push_back({before.targets[t].gap, t});
+      }
+    }
+    std::sort(targets_.begin(), targets_.end());  // the strictest first
     const auto old_runs = ByName(before);
     const auto new_runs = ByName(now);
     int only_before = 0, only_now = static_cast<int>(new_runs.size());
@@ -90,8 +113,8 @@ class Finder {
                                 TextAt(*pair.now->first, "stop") + " now";
       if (reached && !reaches) {
         const std::string why = TextAt(*pair.now->first, "message");
-        report_->regressions.push_back(NameOf(key) + ": " + stops +
-                                       (why.empty() ? "" : " (" + why + ")"));
+        (IsCloseToTheLimit(pair) ? report_->differences : report_->regressions)
+            .push_back(NameOf(key) + ": " + stops + (why.empty() ? "" : " (" + why + ")"));
         continue;
       }
       if (!reached && reaches) report_->differences.push_back(NameOf(key) + ": " + stops);
@@ -102,7 +125,7 @@ class Finder {
   void CompareCosts() {
     struct Test {
       std::string solver;
-      bool of_time = false;
+      Measure measure = Measure::kEvaluations;
       SignedRank rank;
       double ratio = 1.0;
     };
@@ -113,11 +136,16 @@ class Finder {
         solvers.push_back(key[1]);
       }
     }
-    for (const bool of_time : {false, true}) {
+    for (const Measure measure : kMeasures) {
       for (const std::string& solver : solvers) {
-        const std::vector<double> logs = LogRatios(solver, of_time);
-        if (logs.empty()) continue;
-        tests.push_back({solver, of_time, TestSignedRank(logs), std::exp(Median(logs))});
+        const std::vector<double> logs = LogRatios(solver, measure);
+        if (!logs.empty()) {
+          tests.push_back({solver, measure, TestSignedRank(logs), std::exp(Median(logs))});
+        } else if (measure == Measure::kEvaluations && Ran(solver)) {
+          report_->differences.push_back(
+              solver +
+              ": no run reaches what is asked, or a target, both times: costs not compared");
+        }
       }
     }
     std::vector<double> p_values;
@@ -125,18 +153,21 @@ class Finder {
     const std::vector<double> corrected = HolmCorrected(p_values);
     for (std::size_t k = 0; k < tests.size(); ++k) {
       const Test& test = tests[k];
-      const char* const cost = test.of_time ? "seconds" : "evaluations";
-      const bool worse = corrected[k] < rule_.significance && test.ratio > 1.0 + rule_.slowdown;
+      const char* const cost = ToString(test.measure);
+      const double allowed =
+          test.measure == Measure::kEnergyInTime ? rule_.energy_rounding : rule_.slowdown;
+      const bool worse = corrected[k] < rule_.significance && test.ratio > 1.0 + allowed;
       report_->tests.AddRow({Cleaned(test.solver), cost, std::to_string(test.rank.count),
                              NumberText(test.ratio), NumberText(test.rank.positive_sum),
                              NumberText(test.rank.p_greater), NumberText(corrected[k]),
                              worse ? "yes" : "no"});
       if (!worse) continue;
-      report_->regressions.push_back((test.solver == "all" ? "all solvers" : test.solver) +
-                                     " need " + ShortNumber(test.ratio, 3) + " times the " + cost +
-                                     " (median of " + std::to_string(test.rank.count) +
-                                     " cells that differ; p = " + ShortNumber(corrected[k], 2) +
-                                     ")");
+      const std::string who = test.solver == "all" ? "all solvers" : test.solver;
+      const bool of_energy = test.measure == Measure::kEnergyInTime;
+      report_->regressions.push_back(
+          who + (of_energy ? " end at " : " need ") + ShortNumber(test.ratio, of_energy ? 7 : 3) +
+          " times the " + cost + " (median of " + std::to_string(test.rank.count) +
+          " cells that differ; p = " + ShortNumber(corrected[k], 2) + ")");
     }
   }
 
@@ -146,7 +177,15 @@ class Finder {
     return text;
   }
 
+  /// It came to the limit of time from half of it or more: no more than the machine's mood.
+  static bool IsCloseToTheLimit(const Pair& pair) {
+    constexpr double kMood = 2.0;
+    return EndsInTime(*pair.now) && NumberAt(*pair.now->first, "seconds") <=
+                                        kMood * NumberAt(*pair.before->first, "seconds");
+  }
+
   void CompareEnergies(const RunKey& key, const Pair& pair) {
+    if (EndsInTime(*pair.before) || EndsInTime(*pair.now)) return;  // tested, all together
     const double before = NumberAt(*pair.before->first, "energy");
     const double now = NumberAt(*pair.now->first, "energy");
     const double start = NumberAt(*pair.before->first, "start_energy");
@@ -159,21 +198,52 @@ class Finder {
     (now > before ? report_->regressions : report_->differences).push_back(sentence);
   }
 
-  /// Logarithms of now over before, of runs that reach what is asked both times.
-  std::vector<double> LogRatios(const std::string& solver, bool of_time) const {
+  bool Ran(const std::string& solver) const {
+    return std::any_of(pairs_.begin(), pairs_.end(), [&](const auto& entry) {
+      return entry.first[1] == solver && entry.second.before->ran && entry.second.now->ran;
+    });
+  }
+
+  /// Logarithms of now over before, of the pairs that can be compared by this.
+  std::vector<double> LogRatios(const std::string& solver, Measure measure) const {
     std::vector<double> logs;
     for (const auto& [key, pair] : pairs_) {
       if (solver != "all" && key[1] != solver) continue;
-      if (!Reached(*pair.before) || !Reached(*pair.now)) continue;
-      const double ratio = CostOf(*pair.now, of_time) / CostOf(*pair.before, of_time);
+      const double ratio =
+          measure == Measure::kEnergyInTime ? EnergyRatio(pair) : CostRatio(pair, measure);
       if (std::isfinite(ratio) && ratio > 0.0) logs.push_back(std::log(ratio));
     }
     return logs;
   }
 
+  /// NaN where no end of the two was set by time.
+  static double EnergyRatio(const Pair& pair) {
+    if (!EndsInTime(*pair.before) && !EndsInTime(*pair.now)) return std::nan("");
+    return NumberAt(*pair.now->first, "energy") / NumberAt(*pair.before->first, "energy");
+  }
+
+  /// Of whole runs that reach what is asked both times; of others to the strictest gap in their own
+  /// basin that both reach; NaN where there is none.
+  double CostRatio(const Pair& pair, Measure measure) const {
+    const bool of_time = measure == Measure::kSeconds;
+    if (Reached(*pair.before) && Reached(*pair.now)) {
+      return of_time ? Median(pair.now->seconds) / Median(pair.before->seconds)
+                     : Evaluations(*pair.now) / Evaluations(*pair.before);
+    }
+    const auto place =
+        static_cast<std::size_t>(of_time ? BenchCost::kSeconds : BenchCost::kEvaluations);
+    for (const auto& [gap, t] : targets_) {
+      const double before = pair.before->to_own_target[t][place];
+      const double now = pair.now->to_own_target[t][place];
+      if (std::isfinite(before) && std::isfinite(now)) return now / before;
+    }
+    return std::nan("");
+  }
+
   const RegressionRule& rule_;
   RegressionReport* report_;
   std::map<RunKey, Pair> pairs_;
+  std::vector<std::pair<double, std::size_t>> targets_;  // gap and place
 };
 
 void CompareBuilds(const BenchData& before, const BenchData& now, RegressionReport* report) {

@@ -12,7 +12,8 @@ namespace batten {
 struct RegressionRule {
   double slowdown = 0.05;         // a median ratio above 1 by more than this counts
   double significance = 0.01;     // of one-sided signed-rank tests, after Holm's correction
-  double energy_rounding = 1e-6;  // ends that differ by less than this part of E are alike
+  double energy_rounding = 1e-6;  // ends that differ by less than this part of E are alike; those
+                                  // that time set are tested together, as costs are
 };
 
 struct RegressionReport {

@@ -73,6 +73,8 @@ struct RunResult {
   /// follow each other once: two solvers with one hash and count are one method.
   std::uint64_t stream_hash = 0;
   long stream_points = 0;
+  /// The hashes after 4, 8, 16, ... points: what two runs have in common where limits cut one.
+  std::vector<std::uint64_t> stream_prefixes;
   long calls_past_stop = 0;  ///< Evaluations and iterations after it was told to stop.
   std::vector<std::pair<std::string, std::string>> notes;
   std::vector<TraceRow> trace;

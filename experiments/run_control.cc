@@ -128,6 +128,10 @@ void RunControl::AddToStream(std::uint64_t point) {
   last_point_ = point;
   ++result_->stream_points;
   result_->stream_hash = (result_->stream_hash ^ point) * 1099511628211ULL;
+  constexpr long kFirstPrefix = 4;
+  if (result_->stream_points == kFirstPrefix << result_->stream_prefixes.size()) {
+    result_->stream_prefixes.push_back(result_->stream_hash);
+  }
 }
 
 void RunControl::Book(const Eigen::VectorXd& x) {

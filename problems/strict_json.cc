@@ -145,8 +145,9 @@ bool StrictObject::Word(const std::string& key, Presence presence,
   bool result = true;
   if (!IsThere(key, presence, allowed, &result)) return result;
   const Json& word = *Find(key);
-  if (!word.is_string() || std::find(words.begin(), words.end(), word) == words.end()) {
-    return Refuse(key, allowed);
+  if (!word.is_string()) return Refuse(key, allowed);
+  if (std::find(words.begin(), words.end(), word) == words.end()) {
+    return Refuse(key, allowed + "; did you mean " + NearestName(word, words) + "?");
   }
   *value = word.get<std::string>();
   return true;

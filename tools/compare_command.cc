@@ -28,7 +28,9 @@ DEFINE_int32(
     "So many iterates of each run are kept, for the player of batten report; not where all "
     "of a run's, at --max_iterations, would need more than 256 MiB.");
 DEFINE_bool(strict, false, "Exit status 1 if some solver did not reach what was asked.");
-DEFINE_bool(figures, true, "Draw convergence and fitted curves with gnuplot.");
+DEFINE_bool(figures, true,
+            "Draw the results with gnuplot: convergence and fitted curves of compare, profiles and "
+            "distributions of bench.");
 DEFINE_bool(
     resume, false,
     "Take over the problems that an earlier run into the same folder has finished, as far as "

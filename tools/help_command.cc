@@ -59,7 +59,8 @@ std::string GeneralHelp() {
          "last counts.\n"
          "batten help COMMAND (or --help anywhere) shows a command's flags; --version the build.\n"
          "Exit status: 0 done, 1 not reached, 2 bad input or usage, 3 a claim failed its audit or\n"
-         "solvers disagree, 70 a fault of the program, 130 interrupted.\n";
+         "solvers disagree, 4 regress found the second result worse, 70 a fault of the program,\n"
+         "130 interrupted.\n";
 }
 
 std::string CommandHelp(const Command& command) {

@@ -200,9 +200,11 @@ TEST_F(ProblemFile, RefusesUnknownKeysAndWords) {
   EXPECT_THAT(Refusal(WithSpline("", R"(, "term": [])")),
               HasSubstr("/: unknown key \"term\"; did you mean terms? known: name, "));
   EXPECT_EQ(Refusal(WithSpline(R"("control_points": 4, "knots": "unifrom")")),
-            "/spline/knots: found \"unifrom\"; allowed: uniform, averaged");
-  EXPECT_EQ(Refusal(WithSpline(R"("control_points": 4)", R"(, "parameters": "chord")")),
-            "/parameters: found \"chord\"; allowed: uniform, chord_length, centripetal, given");
+            "/spline/knots: found \"unifrom\"; allowed: uniform, averaged; did you mean uniform?");
+  EXPECT_EQ(
+      Refusal(WithSpline(R"("control_points": 4)", R"(, "parameters": "chord")")),
+      "/parameters: found \"chord\"; allowed: uniform, chord_length, centripetal, given; did you "
+      "mean chord_length?");
   EXPECT_THAT(Refusal(WithSpline(R"("control_points": 4)", R"(, "terms": ["interpolatoin"])")),
               HasSubstr("/terms/0: unknown term \"interpolatoin\"; did you mean interpolation?"));
   EXPECT_THAT(

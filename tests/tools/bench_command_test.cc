@@ -516,6 +516,11 @@ INSTANTIATE_TEST_SUITE_P(
                    (*s)["budgets"] = {{"second", 1}};
                  },
                  {"/budgets", "did you mean seconds?"}},
+        BadSuite{"ModeWord",
+                 [](json* s) {
+                   (*s)["rule"] = {{"mode", "rase"}};
+                 },
+                 {"/rule/mode", "did you mean race?"}},
         BadSuite{"OneIterate",
                  [](json* s) { (*s)["keep_iterates"] = 1; },
                  {"/keep_iterates: found 1; allowed: 0, or 2 to 1000"}},
