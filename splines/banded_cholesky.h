@@ -30,7 +30,7 @@ class BandedCholesky {
     std::vector<double> border;  // (width - 1) x (width - 1): rows j.., border columns
     std::vector<double> corner;  // border x border
   };
-  void FirstPending(const std::vector<double>& band, Pending* pending) const;
+  void FirstPending(const std::vector<double>& band, Pending* first) const;
   /// Of the matrix: what pivots are held against, and the norm.
   void MeasureMatrix(const NormalBand& matrix, int dense_size);
   /// Eliminates columns 0..num_swept_ - 1. kWidth < 0: any width. False as Factor().
