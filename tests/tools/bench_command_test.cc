@@ -1,87 +1,19 @@
-// `bench`, `merge` and `regress` as processes: bad suites, killed runs, a full disk, parts.
+// `bench` and `merge` as processes: killed runs, a full disk, parts.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
-#include <functional>
 #include <map>
 #include <random>
 #include <set>
 
+#include "tests/tools/bench_fixture.h"
 #include "tests/tools/page_text.h"
-#include "tests/tools/program.h"
 
 namespace batten {
 namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-json GoodSuite() {
-  return {{"format", "batten.suite/1"},
-          {"name", "good"},
-          {"problems",
-           {{{"synthetic", "star"}, {"name", "star"}, {"points", 60}, {"control_points", {8, 12}}},
-            {{"synthetic", "wave"}, {"name", "wave"}, {"points", 40}, {"control_points", 9}}}},
-          {"solvers",
-           {"banded_cholesky",
-            "cg",
-            {{"solver", "lbfgs"}, {"options", {{"memory", {3, 10}}}}},
-            "lspia"}},
-          {"budgets", {{"seconds", 20}, {"iterations", 200}}},
-          {"warm_up", 0},
-          {"repetitions", 4}};
-}
-
-class Bench : public ::testing::Test {
- protected:
-  std::string Suite(const json& suite) const { return folder_.Write("suite.json", suite.dump()); }
-  std::vector<std::string> Arguments(const std::string& suite, const std::string& out) const {
-    return {"bench", suite, "--out=" + (folder_ / out), "--nofigures", "--quiet"};
-  }
-  Ended RunIn(const std::string& suite, const std::string& out,
-              const std::string& flag = "") const {
-    std::vector<std::string> arguments = Arguments(suite, out);
-    if (!flag.empty()) arguments.push_back(flag);
-    return RunBatten(arguments);
-  }
-  /// The table without the columns of time, which stand last.
-  std::vector<std::string> TimelessTable(const std::string& out) const {
-    std::vector<std::string> lines = Lines(ReadFile(folder_ / (out + "/table.csv")));
-    constexpr int kTimes = 4;
-    EXPECT_THAT(lines.at(0), ::testing::EndsWith(",seconds,seconds_low,seconds_high,work_units"));
-    for (std::string& line : lines) {
-      for (int k = 0; k < kTimes; ++k) line.resize(line.rfind(','));
-    }
-    return lines;
-  }
-  /// Keys of the rows, each of which is whole.
-  std::multiset<std::string> Keys(const std::string& out) const {
-    std::multiset<std::string> keys;
-    for (const std::string& line : Lines(ReadFile(folder_ / (out + "/cells.jsonl")))) {
-      keys.insert(json::parse(line)["key"].get<std::string>());
-    }
-    return keys;
-  }
-
-  /// Iterates by run: first repetitions alone have some, whose number the row says.
-  std::map<std::string, std::string> Iterates(const std::string& out) const {
-    std::map<std::string, std::string> iterates;
-    for (const std::string& line : Lines(ReadFile(folder_ / (out + "/cells.jsonl")))) {
-      const json row = json::parse(line);
-      const std::string key = row["key"].get<std::string>();
-      const std::string path = folder_ / (out + "/iterates/" + key + ".jsonl");
-      EXPECT_EQ(std::filesystem::exists(path), row["iterate_rows"] > 0);
-      if (row["iterate_rows"] == 0) continue;
-      iterates[key] = ReadFile(path);
-      EXPECT_EQ(Lines(iterates[key]).size(), row["iterate_rows"].get<std::size_t>());
-      EXPECT_TRUE(std::filesystem::exists(
-          folder_ / (out + "/curves/" + row["instance"].get<std::string>() + ".json")));
-    }
-    return iterates;
-  }
-
-  TemporaryFolder folder_;
-};
 
 TEST_F(Bench, DryRunPrintsTheMatrixAndWritesNothing) {
   const Ended ended = RunBatten({"bench", Suite(GoodSuite()), "--dry_run"});
@@ -348,42 +280,6 @@ TEST_F(Bench, MoreJobsAreMarkedAndLeftOutOfTime) {
   }
 }
 
-TEST_F(Bench, RegressFindsAWorseResult) {
-  const std::string suite = Suite(GoodSuite());
-  ASSERT_EQ(RunIn(suite, "before").status, 0);
-  std::filesystem::copy(folder_ / "before", folder_ / "now",
-                        std::filesystem::copy_options::recursive);
-  const Ended same = RunBatten({"regress", folder_ / "before", folder_ / "now"});
-  EXPECT_EQ(same.status, 0) << same.err;
-  EXPECT_THAT(same.out, HasSubstr("15 runs in both"));
-  std::string edited;
-  for (const std::string& line : Lines(ReadFile(folder_ / "now/cells.jsonl"))) {
-    json row = json::parse(line);
-    if (row["solver"] == "cg" && row["problem"] == "wave") row["stop"] = "diverged";
-    edited += row.dump() + "\n";
-  }
-  folder_.Write("now/cells.jsonl", edited);
-  const Ended worse = RunBatten({"regress", folder_ / "before", folder_ / "now"});
-  EXPECT_EQ(worse.status, 4);
-  EXPECT_THAT(worse.err, HasSubstr("wave | own: cg: gradient_small before, diverged now"));
-}
-
-TEST_F(Bench, RegressDoesNotTakeABeliedClaimInAnyRepetition) {
-  ASSERT_EQ(RunIn(Suite(GoodSuite()), "before").status, 0);
-  std::filesystem::copy(folder_ / "before", folder_ / "now",
-                        std::filesystem::copy_options::recursive);
-  std::string edited;
-  for (const std::string& line : Lines(ReadFile(folder_ / "now/cells.jsonl"))) {
-    json row = json::parse(line);
-    if (row["solver"] == "cg" && row["problem"] == "wave" && row["repetition"] == 3) {
-      row["findings"] = {"claim_fails"};
-    }
-    edited += row.dump() + "\n";
-  }
-  folder_.Write("now/cells.jsonl", edited);
-  EXPECT_EQ(RunBatten({"regress", folder_ / "before", folder_ / "now"}).status, 4);
-}
-
 TEST_F(Bench, PairsLeaveOutInstancesToWhichOneDoesNotApply) {
   json suite = GoodSuite();
   suite["solvers"] = {"banded_cholesky", "cg", "foot_newton"};  // the last: free parameters only
@@ -411,141 +307,6 @@ TEST_F(Bench, CountsExcludedCellsApart) {
   EXPECT_THAT(solvers, HasSubstr("gap 0.1,fixed,banded_cholesky,3,0,3,"));
 }
 
-TEST_F(Bench, RegressTestsTimesOfAllCells) {
-  const std::string suite = Suite(GoodSuite());
-  ASSERT_EQ(RunIn(suite, "before").status, 0);
-  std::filesystem::copy(folder_ / "before", folder_ / "now",
-                        std::filesystem::copy_options::recursive);
-  std::string edited;
-  for (const std::string& line : Lines(ReadFile(folder_ / "now/cells.jsonl"))) {
-    json row = json::parse(line);
-    row["seconds"] = 1.2 * row["seconds"].get<double>();
-    edited += row.dump() + "\n";
-  }
-  folder_.Write("now/cells.jsonl", edited);
-  const Ended slower = RunBatten({"regress", folder_ / "before", folder_ / "now"});
-  EXPECT_EQ(slower.status, 4) << slower.out;
-  EXPECT_THAT(slower.err, HasSubstr("all solvers need 1.20 times the seconds"));
-  EXPECT_EQ(RunBatten({"regress", folder_ / "before", folder_ / "now", "--slowdown=0.5"}).status,
-            0);
-}
-
-struct BadSuite {
-  const char* name;
-  std::function<void(json*)> spoil;
-  std::vector<std::string> parts;  // of the message
-};
-void PrintTo(const BadSuite& bad, std::ostream* stream) { *stream << bad.name; }
-
-class BadSuites : public Bench, public ::testing::WithParamInterface<BadSuite> {};
-
-TEST_P(BadSuites, GetOneLineWithThePath) {
-  json suite = GoodSuite();
-  GetParam().spoil(&suite);
-  std::vector<std::string> parts = GetParam().parts;
-  parts.push_back("suite.json: /");
-  ExpectRefused(RunBatten({"bench", Suite(suite), "--out=" + (folder_ / "out")}), parts);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    BenchCommand, BadSuites,
-    ::testing::Values(
-        BadSuite{"UnknownKey",
-                 [](json* s) { (*s)["repetition"] = 3; },
-                 {"unknown key", "did you mean repetitions?"}},
-        BadSuite{"NoFormat", [](json* s) { s->erase("format"); }, {"/format: found nothing"}},
-        BadSuite{"WrongType",
-                 [](json* s) { (*s)["repetitions"] = "five"; },
-                 {"/repetitions: found \"five\"; allowed: 1 to 1000"}},
-        BadSuite{"NoProblems",
-                 [](json* s) { (*s)["problems"] = json::array(); },
-                 {"/problems: found an empty list"}},
-        BadSuite{"ProblemUnknown",
-                 [](json* s) { (*s)["problems"][0] = "rihno"; },
-                 {"/problems/0", "did you mean rhino?"}},
-        BadSuite{"ProblemKey",
-                 [](json* s) { (*s)["problems"][0]["point"] = 3; },
-                 {"/problems/0", "did you mean points?"}},
-        BadSuite{
-            "MissingFile",
-            [](json* s) {
-              (*s)["problems"][0] = {{"data", "no/such.csv"}, {"name", "x"}, {"control_points", 9}};
-            },
-            {"/problems/0/data: found \"no/such.csv\"; allowed: a file in"}},
-        BadSuite{"EmptyGrid",
-                 [](json* s) { (*s)["problems"][0]["control_points"] = json::array(); },
-                 {"/problems/0/control_points: found an empty list"}},
-        BadSuite{"GridValue",
-                 [](json* s) {
-                   (*s)["problems"][0]["control_points"] = {8, -3};
-                 },
-                 {"/problems/0/control_points/1: found -3"}},
-        BadSuite{"TooFewControlPoints",
-                 [](json* s) { (*s)["problems"][1]["control_points"] = 2; },
-                 {"/problems/1/control_points: found 2; allowed: more than the degree, 3"}},
-        BadSuite{"SolverUnknown",
-                 [](json* s) { (*s)["solvers"][1] = "gc"; },
-                 {"/solvers/1", "did you mean cg?"}},
-        BadSuite{"SolverOption",
-                 [](json* s) {
-                   (*s)["solvers"][2]["options"] = {{"memry", {3}}};
-                 },
-                 {"/solvers/2/options/memry", "memory"}},
-        BadSuite{"SolverOptionRange",
-                 [](json* s) {
-                   (*s)["solvers"][2]["options"] = {{"memory", {3, 0}}};
-                 },
-                 {"/solvers/2/options/memory"}},
-        BadSuite{"EmptyOptionGrid",
-                 [](json* s) {
-                   (*s)["solvers"][2]["options"] = {{"memory", json::array()}};
-                 },
-                 {"/solvers/2/options/memory: found an empty list"}},
-        BadSuite{"SolverTwice",
-                 [](json* s) { (*s)["solvers"][0] = "lbfgs"; },
-                 {"/solvers/2: found lbfgs/memory=10 twice"}},
-        BadSuite{"Term",
-                 [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
-                 {"/terms/0", "did you mean fairing?"}},
-        BadSuite{"NegativeBudget",
-                 [](json* s) { (*s)["budgets"]["seconds"] = -1; },
-                 {"/budgets/seconds: found -1; allowed: 0.001 to"}},
-        BadSuite{"BudgetKey",
-                 [](json* s) {
-                   (*s)["budgets"] = {{"second", 1}};
-                 },
-                 {"/budgets", "did you mean seconds?"}},
-        BadSuite{"ModeWord",
-                 [](json* s) {
-                   (*s)["rule"] = {{"mode", "rase"}};
-                 },
-                 {"/rule/mode", "did you mean race?"}},
-        BadSuite{"OneIterate",
-                 [](json* s) { (*s)["keep_iterates"] = 1; },
-                 {"/keep_iterates: found 1; allowed: 0, or 2 to 1000"}},
-        BadSuite{"Target",
-                 [](json* s) {
-                   (*s)["targets"] = {{"gaps", {0.1, 2}}};
-                 },
-                 {"/targets/gaps/1: found 2"}},
-        BadSuite{"Seeds",
-                 [](json* s) {
-                   (*s)["seeds"] = {{"start", {1, 1.5}}};
-                 },
-                 {"/seeds/start/1: found 1.5"}},
-        BadSuite{"ExclusionOfNothing",
-                 [](json* s) {
-                   (*s)["exclude"] = {{{"solvers", {"gim*"}}}};
-                 },
-                 {"/exclude/0: matches nothing"}},
-        BadSuite{"ExclusionOfAll",
-                 [](json* s) {
-                   (*s)["exclude"] = {{{"solvers", {"*"}}}};
-                 },
-                 {"/exclude: leaves nothing to run"}}),
-    [](const auto& bad) { return std::string(bad.param.name); });
-
 TEST_F(Bench, RefusesBadFlags) {
   const std::string suite = Suite(GoodSuite());
   ExpectRefused(RunBatten({"bench", suite}), {"--out"});
@@ -555,7 +316,6 @@ TEST_F(Bench, RefusesBadFlags) {
                   {"--shard: found", "I/N"});
   }
   ExpectRefused(RunBatten({"bench", folder_ / "none.json", "--dry_run"}), {"none.json"});
-  ExpectRefused(RunBatten({"regress", folder_ / "a", folder_ / "b"}), {"manifest.json"});
 }
 
 }  // namespace
