@@ -102,7 +102,7 @@ Eigen::VectorXd EigenvaluesOfNormalMatrix(const Problem& problem, bool unit_diag
     scaled.Multiply(unit.data(), column.data());
     for (int k = 0; k < n; ++k) matrix(k, j) = column[static_cast<Eigen::Index>(k) * d];
   }
-  const Eigen::VectorXd all = DecomposeSymmetric(matrix).values;
+  const Eigen::VectorXd all = SymmetricEigenvalues(matrix);
   const double null = n * std::numeric_limits<double>::epsilon() * all.maxCoeff();
   return all.tail((all.array() > null).count());
 }

@@ -69,6 +69,24 @@ FitSpec FreeSpec(int control_points) {
 
 }  // namespace
 
+const std::vector<std::string>& IteratingMethods() {
+  static const auto& names = *new std::vector<std::string>{kJointLbfgs,
+                                                           "pdm",
+                                                           "tdm",
+                                                           "sdm",
+                                                           "foot_newton",
+                                                           "newton",
+                                                           "lm_schur",
+                                                           "varpro",
+                                                           "gi",
+                                                           "ceres_lbfgs",
+                                                           "ceres_lm",
+                                                           "anderson/window=5:gi",
+                                                           "anderson/window=5:tdm",
+                                                           "anderson/window=5:sdm"};
+  return names;
+}
+
 const std::vector<std::string>& PaperExampleNames() {
   static const auto& names = *new std::vector<std::string>{"smooth", "sharp", "noisy"};
   return names;

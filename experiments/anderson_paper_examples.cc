@@ -9,24 +9,12 @@
 namespace batten {
 namespace {
 
-constexpr const char* kSolvers[] = {kJointLbfgs,
-                                    kAndersonPdm,
-                                    "pdm",
-                                    "tdm",
-                                    "sdm",
-                                    "foot_newton",
-                                    "newton",
-                                    "lm_schur",
-                                    "varpro",
-                                    "gi",
-                                    "ceres_lbfgs",
-                                    "ceres_lm",
-                                    "anderson/window=5:gi",
-                                    "anderson/window=5:tdm",
-                                    "anderson/window=5:sdm",
-                                    "best_of:lbfgs",
-                                    "best_of:foot_newton",
-                                    kUndampedTdm};
+/// Iterations of `best_of` are ends of runs, and the undamped method has none worth a time.
+std::vector<std::string> Solvers() {
+  std::vector<std::string> solvers = IteratingMethods();
+  solvers.insert(solvers.end(), {"best_of:lbfgs", "best_of:foot_newton", kUndampedTdm});
+  return solvers;
+}
 constexpr const char* kCurves[] = {kJointLbfgs, kAndersonPdm, "foot_newton"};
 constexpr const char* kData = "data";
 
@@ -49,21 +37,21 @@ bool RunExamples(const ExperimentRun& run, ExperimentTables* tables, std::string
   CsvTable& curves = (*tables)["curves"] = CsvTable({"example", "solver", "x", "y"});
   std::vector<PaperExample> examples;
   if (!ShownExamples(&examples, error)) return false;
+  const std::vector<std::string> solvers = Solvers();
   double done = 0.0;
   for (const PaperExample& example : examples) {
     const FreeCase on = {example.name, "circle",
                          FreeFit(example.points, example.control_points, "circle")};
     AddCurve(example.name, kData, example.points, &curves);
-    for (const char* solver : kSolvers) {
+    for (const std::string& solver : solvers) {
       if (InterruptRequested()) return true;
       if (run.progress) {
-        run.progress(done / static_cast<double>(std::size(kSolvers) * examples.size()),
+        run.progress(done / static_cast<double>(solvers.size() * examples.size()),
                      example.name + " " + solver);
       }
       done += 1.0;
       const RunResult result = RunFree(on, solver, FreeRaceSpec(), run.repetitions, &runs, &traces);
-      if (std::find(std::begin(kCurves), std::end(kCurves), std::string(solver)) !=
-          std::end(kCurves)) {
+      if (std::find(std::begin(kCurves), std::end(kCurves), solver) != std::end(kCurves)) {
         AddSampledCurve(on, solver, result.x, &curves);
       }
     }

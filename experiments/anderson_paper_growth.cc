@@ -9,22 +9,6 @@
 namespace batten {
 namespace {
 
-// Without `best_of`, whose iterations are ends of runs.
-constexpr const char* kSolvers[] = {kJointLbfgs,
-                                    kAndersonPdm,
-                                    "pdm",
-                                    "tdm",
-                                    "sdm",
-                                    "foot_newton",
-                                    "newton",
-                                    "lm_schur",
-                                    "varpro",
-                                    "gi",
-                                    "ceres_lbfgs",
-                                    "ceres_lm",
-                                    "anderson/window=5:gi",
-                                    "anderson/window=5:tdm",
-                                    "anderson/window=5:sdm"};
 // Enough for a mean, and before any method is done.
 constexpr int kIterations = 30;
 
@@ -52,7 +36,7 @@ void AddGrowthRows(const Problem& problem, const ExperimentRun& run, double done
   const std::string points = std::to_string(problem.curve_fit()->parameters().size());
   const std::string control_points =
       std::to_string(problem.curve_fit()->basis().num_control_points());
-  for (const char* solver : kSolvers) {
+  for (const std::string& solver : IteratingMethods()) {
     if (InterruptRequested()) return;
     if (run.progress) {
       run.progress(done, points + " points, " + control_points + " control points, " + solver);
@@ -123,13 +107,13 @@ std::vector<PlotPanel> AgainstGrowth(const ExperimentTables& tables, const std::
 
 CsvTable GrowthShown(const ExperimentTables& tables, const std::string& size) {
   std::vector<std::string> columns = {size};
-  for (const char* solver : kSolvers) columns.push_back(std::string(solver) + " us");
+  for (const std::string& solver : IteratingMethods()) columns.push_back(solver + " us");
   CsvTable shown(columns);
   const CsvTable& all = tables.at("");
   for (const std::string& value : all.Distinct(size)) {
     const CsvTable on = all.Where(size, value);
     std::vector<std::string> row = {value};
-    for (const char* solver : kSolvers) {
+    for (const std::string& solver : IteratingMethods()) {
       row.push_back(
           NumberText(1e6 * OnlyNumber(on.Where("solver", solver), "seconds_per_iteration")));
     }

@@ -16,6 +16,8 @@ inline constexpr const char* kAndersonPdm = "anderson/window=5:pdm";
 inline constexpr const char* kJointLbfgs = "lbfgs";
 // The undamped method of which they say that it diverges.
 inline constexpr const char* kUndampedTdm = "tdm/damping=0/search=none";
+/// All methods whose iterations can be compared: the paper's two, then ours.
+const std::vector<std::string>& IteratingMethods();
 // Of each kind one, as many as there are colours.
 inline constexpr const char* kDrawnMethods[] = {kJointLbfgs, kAndersonPdm,  "pdm",    "tdm",
                                                 "sdm",       "foot_newton", "newton", "lm_schur"};

@@ -1,5 +1,6 @@
 #include "experiments/bench_data.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -71,6 +72,11 @@ std::vector<std::string> TextsAt(const nlohmann::json& row, const char* key) {
     if (entry.is_string()) texts.push_back(entry.get<std::string>());
   }
   return texts;
+}
+
+bool HasFinding(const nlohmann::json& row, const char* finding) {
+  const std::vector<std::string> findings = TextsAt(row, "findings");
+  return std::find(findings.begin(), findings.end(), finding) != findings.end();
 }
 
 std::vector<double> NumbersAt(const nlohmann::json& row, const char* key) {

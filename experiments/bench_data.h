@@ -27,6 +27,8 @@ double NumberAt(const nlohmann::json& row, const char* key);
 std::string TextAt(const nlohmann::json& row, const char* key);
 bool FlagAt(const nlohmann::json& row, const char* key);
 std::vector<std::string> TextsAt(const nlohmann::json& row, const char* key);
+/// Whether the runner found this ("claim_fails", ...) in the row's run.
+bool HasFinding(const nlohmann::json& row, const char* finding);
 std::vector<double> NumbersAt(const nlohmann::json& row, const char* key);
 
 }  // namespace batten

@@ -21,22 +21,17 @@ bool ProcessFailed(const nlohmann::json& row) {
          stop == "cpu_limit";
 }
 
-bool HasFlag(const nlohmann::json& row, const char* flag) {
-  const std::vector<std::string> flags = TextsAt(row, "findings");
-  return std::find(flags.begin(), flags.end(), flag) != flags.end();
-}
-
 /// What is looked for in one repetition only.
 std::vector<std::string> PluginFaults(const nlohmann::json& row) {
   std::vector<std::string> faults;
-  if (HasFlag(row, "wrong_gradient")) {
+  if (HasFinding(row, "wrong_gradient")) {
     std::string terms;
     for (const std::string& term : TextsAt(row, "wrong_gradients")) {
       terms += (terms.empty() ? "" : ", ") + term;
     }
     faults.push_back("wrong gradient: that of " + terms + " is not the one of its E");
   }
-  if (HasFlag(row, "reads_past_x")) {
+  if (HasFinding(row, "reads_past_x")) {
     faults.emplace_back("reads past x: what stands behind its end changes the iterates");
   }
   return faults;
@@ -44,7 +39,7 @@ std::vector<std::string> PluginFaults(const nlohmann::json& row) {
 
 /// What one row has to say against its solver.
 std::vector<std::string> Complaints(const nlohmann::json& row) {
-  const auto Has = [&row](const char* flag) { return HasFlag(row, flag); };
+  const auto Has = [&row](const char* flag) { return HasFinding(row, flag); };
   const std::string stop = TextAt(row, "stop");
   if (ProcessFailed(row)) return {stop + ": " + TextAt(row, "message")};
   std::vector<std::string> complaints;
@@ -97,7 +92,7 @@ void NoteRuns(BenchResults* results) {
   for (const BenchRun& run : results->runs) {
     NoteComplaints(run, results);
     for (const nlohmann::json* row : run.rows) {
-      const bool belied = HasFlag(*row, "claim_fails") || HasFlag(*row, "other_options") ||
+      const bool belied = HasFinding(*row, "claim_fails") || HasFinding(*row, "other_options") ||
                           !PluginFaults(*row).empty();
       if (belied || !TextAt(*row, "disagreement").empty()) results->some_claim_failed = true;
       StopReason reason = StopReason::kNotRun;

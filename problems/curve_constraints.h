@@ -23,9 +23,9 @@ class CurveFit;
 ///   not-a-knot                    C^(p) does not jump at the first and the last inner knot
 ///   periodic                      C^(k), k = 0..p - 1, is the same at both ends of an open curve
 /// t in the domain; lengths in the user's units. point, tangent, curvature and derivative (of order
-/// 1 or 2) also take free=N
-/// instead of t: they hold at one parameter that is found, number N of the fit's, 1 to 99, the same
-/// for all constraints with this number; t, if it is given, is where it starts.
+/// 1 or 2) also take free=N instead of t: they hold at one parameter that is found, number N of the
+/// fit's, 1 to 99, the same for all constraints with this number; t, if it is given, is where it
+/// starts.
 struct ConstraintInfo {
   std::string name;
   std::string summary;

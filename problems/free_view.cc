@@ -1,7 +1,8 @@
 #include "problems/free_view.h"
 
 #include <algorithm>
-#include <cstdlib>
+
+#include "cost_functions/block_reach.h"
 
 namespace batten {
 
@@ -52,27 +53,16 @@ Eigen::VectorXd FreeView::WithoutParameters(const Eigen::VectorXd& all) const {
 }
 
 bool FreeView::IsOnControlPoints(const BlockFamily& term, const Eigen::VectorXd& any) const {
-  const BsplineBasis& basis = *sites_->basis;
-  const int n = num_control_points();
   std::vector<int> offsets, sizes;
   for (int block = 0; block < term.size(); ++block) {
     term.Bind(any, block, &offsets, &sizes);
-    std::vector<int> points;
     for (std::size_t k = 0; k < offsets.size(); ++k) {
       const int place = offsets[k] - sites_->control_point_offset;
-      if (place < 0 || place % dimension() != 0 || place / dimension() >= n) return false;
-      if (sizes[k] != dimension()) return false;
-      points.push_back(place / dimension());
-    }
-    for (const int a : points) {
-      for (const int b : points) {
-        const int apart = std::abs(a - b);
-        const int reach = basis.periodic() ? std::min(apart, n - apart) : apart;
-        if (reach > basis.degree()) return false;
-      }
+      if (place < 0 || place % dimension() != 0 || sizes[k] != dimension()) return false;
+      if (place / dimension() >= num_control_points()) return false;
     }
   }
-  return true;
+  return LargestReach(*sites_->basis, dimension(), term, any) <= sites_->basis->degree();
 }
 
 std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {

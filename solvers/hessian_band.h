@@ -42,11 +42,6 @@ class HessianBand {
   NormalBand band_;
 };
 
-/// How far apart the control points of one residual block are at most; on closed curves the shorter
-/// way around counts. Blocks must depend on control points alone.
-int LargestReach(const BsplineBasis& basis, int dimension, const BlockFamily& term,
-                 const Eigen::VectorXd& any);
-
 }  // namespace batten
 
 #endif  // BATTEN_SOLVERS_HESSIAN_BAND_H_

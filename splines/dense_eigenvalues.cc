@@ -8,13 +8,20 @@ namespace {
 
 using SymmetricSolver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::VectorXd ValuesFound(const SymmetricSolver& solver) {
+  if (solver.info() == Eigen::Success) return solver.eigenvalues();
+  return Eigen::VectorXd::Constant(solver.eigenvalues().size(), kNoNumber);
+}
+
 SymmetricEigen Found(const SymmetricSolver& solver) {
-  const Eigen::Index n = solver.eigenvalues().size();
-  if (solver.info() != Eigen::Success) {
-    constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-    return {Eigen::VectorXd::Constant(n, kNoNumber), Eigen::MatrixXd::Constant(n, n, kNoNumber)};
-  }
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  SymmetricEigen found = {ValuesFound(solver), {}};
+  const Eigen::Index n = found.values.size();
+  found.vectors = solver.info() == Eigen::Success
+                      ? solver.eigenvectors()
+                      : Eigen::MatrixXd(Eigen::MatrixXd::Constant(n, n, kNoNumber));
+  return found;
 }
 
 }  // namespace
@@ -25,6 +32,10 @@ Eigen::VectorXd EigenvalueSizes(const Eigen::MatrixXd& matrix) {
 
 SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& matrix) {
   return Found(SymmetricSolver(matrix));
+}
+
+Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& matrix) {
+  return ValuesFound(SymmetricSolver(matrix, Eigen::EigenvaluesOnly));
 }
 
 SymmetricEigen DecomposeTridiagonal(const Eigen::VectorXd& diagonal,

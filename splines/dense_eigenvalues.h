@@ -19,6 +19,8 @@ struct SymmetricEigen {
 };
 /// Of a symmetric n x n matrix, of which the lower triangle is read.
 SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& matrix);
+/// Its values alone, in a fraction of the time.
+Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& matrix);
 /// Of a symmetric tridiagonal n x n matrix; n entries, n - 1 beside them.
 SymmetricEigen DecomposeTridiagonal(const Eigen::VectorXd& diagonal,
                                     const Eigen::VectorXd& off_diagonal);
