@@ -7,8 +7,8 @@
 namespace batten {
 
 /// How far apart the control points of one residual block of a term are at most; on closed curves
-/// the shorter way around counts. Blocks must depend on control points alone, as a whole each; `any`
-/// is any x.
+/// the shorter way around counts. Blocks must depend on control points alone, as a whole each;
+/// `any` is any x.
 int LargestReach(const BsplineBasis& basis, int dimension, const BlockFamily& term,
                  const Eigen::VectorXd& any);
 

@@ -28,7 +28,9 @@ inline nlohmann::json GoodSuite() {
 
 class Bench : public ::testing::Test {
  protected:
-  std::string Suite(const nlohmann::json& suite) const { return folder_.Write("suite.json", suite.dump()); }
+  std::string Suite(const nlohmann::json& suite) const {
+    return folder_.Write("suite.json", suite.dump());
+  }
   std::vector<std::string> Arguments(const std::string& suite, const std::string& out) const {
     return {"bench", suite, "--out=" + (folder_ / out), "--nofigures", "--quiet"};
   }

@@ -56,9 +56,7 @@ TEST_F(Regress, TestsTimesOfAllCells) {
   const std::string suite = Suite(GoodSuite());
   ASSERT_EQ(RunIn(suite, "before").status, 0);
   CopyBeforeToNow();
-  EditNow([](json& row) {
-    row["seconds"] = 1.2 * row["seconds"].get<double>();
-  });
+  EditNow([](json& row) { row["seconds"] = 1.2 * row["seconds"].get<double>(); });
   const Ended slower = RunBatten({"regress", folder_ / "before", folder_ / "now"});
   EXPECT_EQ(slower.status, 4) << slower.out;
   EXPECT_THAT(slower.err, HasSubstr("all solvers need 1.20 times the seconds"));
