@@ -25,6 +25,7 @@ struct PackOf {
   PackOf(const PackOf& other) {
     for (int l = 0; l < kLanes; ++l) lanes[l] = other.lanes[l];
   }
+  // NOLINTNEXTLINE(bugprone-unhandled-self-assignment): lanes copied onto themselves stay.
   PackOf& operator=(const PackOf& other) {
     for (int l = 0; l < kLanes; ++l) lanes[l] = other.lanes[l];
     return *this;
