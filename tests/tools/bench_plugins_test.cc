@@ -149,8 +149,8 @@ TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-// The sanitizer is the first to see it and ends the cell's process.
-const Fault kReadsPastX = {"fault_reads_past_x", "crashed", "crashed", 0, "ended with status 1"};
+// The sanitizer is the first to see it and ends the process of the cell that looks for it.
+const Fault kReadsPastX = {"fault_reads_past_x", "", "crashed", 0, "ended with status 1"};
 #else
 const Fault kReadsPastX = {"fault_reads_past_x", "", "reads_past_x", 3, "faulty: reads past x: "};
 #endif
