@@ -141,18 +141,6 @@ std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, i
   return part;
 }
 
-int CountExcluded(const BenchSuite& suite, const BenchExclusion& exclusion) {
-  int count = 0;
-  for (std::size_t p = 0; p < suite.problems.size(); ++p) {
-    for (std::size_t t = 0; t < suite.terms.size(); ++t) {
-      for (std::size_t s = 0; s < suite.solvers.size(); ++s) {
-        count += Excludes(suite, exclusion, p, t, s) ? 1 : 0;
-      }
-    }
-  }
-  return count;
-}
-
 bool KeepsIterates(const BenchSuite& suite, const BenchCell& cell) {
   return suite.keep_iterates > 0 && cell.repetition == 1;
 }

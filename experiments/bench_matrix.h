@@ -26,9 +26,6 @@ std::vector<BenchCell> BenchMatrix(const BenchSuite& suite);
 /// compared run on one machine.
 std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, int num_shards);
 
-/// How many cells an exclusion alone leaves out.
-int CountExcluded(const BenchSuite& suite, const BenchExclusion& exclusion);
-
 /// Repetitions walk the same way: one of them is drawn.
 bool KeepsIterates(const BenchSuite& suite, const BenchCell& cell);
 

@@ -195,13 +195,42 @@ bool TryProblems(const StrictObject& file, const BenchSuite& suite) {
   return true;
 }
 
-/// An exclusion that leaves nothing out is a slip of the pen.
+std::vector<std::string> LabelsOf(const BenchSuite& suite, const std::string& axis) {
+  std::vector<std::string> labels;
+  if (axis == "problems") {
+    for (const BenchProblem& problem : suite.problems) labels.push_back(problem.label);
+  } else if (axis == "terms") {
+    for (const BenchTerms& terms : suite.terms) labels.push_back(terms.label);
+  } else {
+    for (const NameSpec& solver : suite.solvers) labels.push_back(solver.ToString());
+  }
+  return labels;
+}
+
+/// A pattern that matches nothing is a slip of the pen.
+bool CheckPatterns(const StrictObject& file, const BenchSuite& suite, const std::string& place,
+                   const std::string& axis, const std::vector<std::string>& patterns) {
+  const std::vector<std::string> labels = LabelsOf(suite, axis);
+  for (std::size_t k = 0; k < patterns.size(); ++k) {
+    const bool matches = std::any_of(labels.begin(), labels.end(), [&](const std::string& label) {
+      return MatchesPattern(patterns[k], label);
+    });
+    if (matches) continue;
+    const std::string kind = axis == "problems" ? "problem" : axis == "terms" ? "terms" : "solver";
+    return file.Complain(place + "/" + axis + "/" + std::to_string(k),
+                         UnknownNameMessage(kind, patterns[k], labels));
+  }
+  return true;
+}
+
 bool CheckExclusions(const StrictObject& file, const BenchSuite& suite) {
   for (const BenchExclusion& exclusion : suite.exclusions) {
-    if (CountExcluded(suite, exclusion) > 0) continue;
-    return file.Complain(exclusion.place.substr(1),
-                         "matches nothing; allowed: patterns of problems, terms and solvers that "
-                         "the suite has, as --dry_run shows them without it");
+    const std::string place = exclusion.place.substr(1);
+    if (!CheckPatterns(file, suite, place, "problems", exclusion.problems) ||
+        !CheckPatterns(file, suite, place, "terms", exclusion.terms) ||
+        !CheckPatterns(file, suite, place, "solvers", exclusion.solvers)) {
+      return false;
+    }
   }
   return !BenchMatrix(suite).empty() ||
          file.Complain("exclude", "leaves nothing to run; allowed: at least one cell");

@@ -5,8 +5,6 @@
 #include <fstream>
 #include <map>
 
-#include "problems/input_file.h"
-
 namespace batten {
 namespace {
 
@@ -33,11 +31,11 @@ bool IsGoodKey(const std::string& key) {
 
 bool ReadLines(const std::string& path,
                const std::function<bool(std::string_view line, long number, bool is_torn)>& take,
-               std::string* error) {
+               std::string* error, std::size_t longest_line) {
   std::ifstream file;
   if (!OpenInput(path, &file, error)) return false;
   const bool is_torn = EndsWithinLine(path);
-  LineReader reader(&file);
+  LineReader reader(&file, longest_line);
   // One line is held back, since only the last one may be torn.
   std::string held;
   long held_number = 0;
@@ -47,8 +45,8 @@ bool ReadLines(const std::string& path,
     held_number = reader.number();
   }
   if (reader.is_too_long()) {
-    *error = path + ":" + std::to_string(reader.number() + 1) +
-             ": found a line of more than 1 MiB; allowed: shorter ones";
+    *error = path + ":" + std::to_string(reader.number() + 1) + ": found a line of more than " +
+             std::to_string(longest_line) + " bytes; allowed: shorter ones";
     return false;
   }
   if (reader.has_failed()) {

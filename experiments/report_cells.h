@@ -7,15 +7,18 @@
 #include <string_view>
 #include <vector>
 
+#include "problems/input_file.h"
+
 namespace batten {
 
 using OrderedJson = nlohmann::ordered_json;
 
 /// Hands each line of `path` but empty ones to `take`, with whether it is the last one and has no
-/// end: a program that was killed left it. Stops at the first false of `take`, which fills `error`.
+/// end: a program that was killed left it. Stops at the first false of `take`, which fills `error`,
+/// and with one sentence at a line of more than `longest_line` bytes.
 bool ReadLines(const std::string& path,
                const std::function<bool(std::string_view line, long number, bool is_torn)>& take,
-               std::string* error);
+               std::string* error, std::size_t longest_line = kLongestLine);
 
 /// The rows of cells.jsonl, each an object; of rows with one `key` the last. A torn last line is
 /// left out and added to `notes`. False with one sentence in `error` for any other line that is no

@@ -14,6 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Bytes of one iterate: `compare` keeps all variables of a fit, millions of them if asked to.
+constexpr std::size_t kLongestIterate = std::size_t{1} << 28;
+
 /// One run's file, looked through once.
 struct IteratesFile {
   std::string key;
@@ -77,7 +80,7 @@ bool LookThrough(IteratesFile* file, std::vector<std::string>* notes, std::strin
     ++file->num_lines;
     return true;
   };
-  return ReadLines(file->path, take, error);
+  return ReadLines(file->path, take, error, kLongestIterate);
 }
 
 bool ReadKept(const IteratesFile& file, std::size_t most, std::vector<ShownIterate>* iterates,
@@ -91,7 +94,7 @@ bool ReadKept(const IteratesFile& file, std::size_t most, std::vector<ShownItera
     iterates->emplace_back();
     return ParseIterate(line, &iterates->back()) || RefuseIterate(file, number, error);
   };
-  return ReadLines(file.path, take, error);
+  return ReadLines(file.path, take, error, kLongestIterate);
 }
 
 /// Corner and longest side of a box around the points of the first iterate, the start.

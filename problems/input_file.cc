@@ -31,7 +31,7 @@ bool LineReader::Next(std::string_view* line) {
   const char* newline = nullptr;
   while ((newline = FindNewline()) == nullptr && !at_end_) Fill();
   const size_t end = newline == nullptr ? end_ : static_cast<size_t>(newline - buffer_.data());
-  is_too_long_ = end - begin_ > kLongestLine;
+  is_too_long_ = end - begin_ > longest_line_;
   if (has_failed() || begin_ == end_) return false;
   ++number_;
   if (is_too_long_) return false;
@@ -56,12 +56,13 @@ void LineReader::Fill() {
   begin_ = 0;
   searched_ = end_;
   // A line without an end in more than is allowed is given up: the file may be endless.
-  if (end_ > kLongestLine) {
+  if (end_ > longest_line_) {
     at_end_ = true;
     return;
   }
+  if (buffer_.size() < end_ + kChunk) buffer_.resize(2 * buffer_.size());
   errno = 0;
-  stream_->read(buffer_.data() + end_, static_cast<std::streamsize>(kLongestLine));
+  stream_->read(buffer_.data() + end_, static_cast<std::streamsize>(kChunk));
   const int error_number = errno;
   end_ += static_cast<size_t>(stream_->gcount());
   // std::cin reads through stdin and takes its errors for the end.

@@ -23,12 +23,14 @@ std::string CannotBeRead(const std::string& file, int error_number);
 inline constexpr size_t kLongestLine = size_t{1} << 20;  // bytes
 
 /// Hands out the lines of a stream without their ends, the first without a byte-order mark; holds
-/// some bytes more than the longest line. The stream may be endless.
+/// 2 MiB, and more only while a line is longer. The stream may be endless.
 class LineReader {
  public:
-  explicit LineReader(std::istream* stream) : stream_(stream), buffer_(2 * kLongestLine) {}
+  /// `longest_line` is in bytes, at least 1.
+  explicit LineReader(std::istream* stream, size_t longest_line = kLongestLine)
+      : stream_(stream), longest_line_(longest_line), buffer_(2 * kChunk) {}
 
-  /// False at the end, after a read error and at a line longer than kLongestLine.
+  /// False at the end, after a read error and at a line longer than the longest.
   bool Next(std::string_view* line);
 
   int64_t number() const { return number_; }  ///< Of the line handed out last, from 1.
@@ -37,10 +39,13 @@ class LineReader {
   bool is_too_long() const { return is_too_long_; }
 
  private:
+  static constexpr size_t kChunk = size_t{1} << 20;
+
   const char* FindNewline();
   void Fill();
 
   std::istream* const stream_;
+  const size_t longest_line_;
   std::vector<char> buffer_;
   size_t begin_ = 0;     // of what has not been handed out
   size_t searched_ = 0;  // no newline in [begin_, searched_)

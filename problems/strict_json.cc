@@ -34,21 +34,43 @@ std::string RangeText(double lowest, double highest) {
   return NumberText(lowest) + " to " + NumberText(highest);
 }
 
-/// Notes the first key that stands twice in its object, which the parser itself lets pass.
+/// Notes the first key that stands twice in its object, which the parser itself lets pass, and
+/// where that object stands.
 class RepeatedKeys {
  public:
   bool operator()(Json::parse_event_t event, const Json& parsed) {
-    if (event == Json::parse_event_t::object_start) open_.emplace_back();
-    if (event == Json::parse_event_t::object_end) open_.pop_back();
-    if (event != Json::parse_event_t::key) return true;
-    const std::string key = parsed.get<std::string>();
-    if (!open_.back().insert(key).second && first_.empty()) first_ = FoundText(&parsed);
+    using Event = Json::parse_event_t;
+    const bool begins = event == Event::object_start || event == Event::array_start;
+    if ((begins || event == Event::value) && !open_.empty() && open_.back().is_list) {
+      ++open_.back().entry;
+    }
+    if (begins) open_.push_back({event == Event::array_start, -1, "", {}});
+    if (event == Event::object_end || event == Event::array_end) open_.pop_back();
+    if (event == Event::key) NoteKey(parsed);
     return true;
   }
+  /// `/spline: key "degree" stands twice`; empty: none does.
   const std::string& first() const { return first_; }
 
  private:
-  std::vector<std::set<std::string>> open_;
+  struct Level {
+    bool is_list;
+    int entry;
+    std::string key;
+    std::set<std::string> keys;
+  };
+
+  void NoteKey(const Json& key) {
+    open_.back().key = key.get<std::string>();
+    if (open_.back().keys.insert(open_.back().key).second || !first_.empty()) return;
+    for (std::size_t k = 0; k + 1 < open_.size(); ++k) {
+      const Level& level = open_[k];
+      first_ += "/" + (level.is_list ? std::to_string(level.entry) : Printable(level.key));
+    }
+    first_ = (first_.empty() ? "/" : first_) + ": key " + FoundText(&key) + " stands twice";
+  }
+
+  std::vector<Level> open_;
   std::string first_;
 };
 
@@ -77,7 +99,7 @@ bool ReadJsonFile(const std::string& path, Json* json, std::string* error) {
     return false;
   }
   if (keys.first().empty()) return true;
-  *error = path + ": key " + keys.first() + " stands twice in one object; allowed: once";
+  *error = path + ": " + keys.first() + "; allowed: once";
   return false;
 }
 

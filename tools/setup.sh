@@ -11,7 +11,7 @@ fail() {
 run=(cmake g++ gnuplot-nox libceres-dev libeigen3-dev libgflags-dev libgoogle-glog-dev
      libmd-dev libmd4c-dev libmd4c-html0-dev libpugixml-dev ninja-build nlohmann-json3-dev)
 test=("${run[@]}" libgmock-dev libgtest-dev liblbfgs-dev libnlopt-dev)
-ci=("${test[@]}" clang-format clang-tidy git)
+ci=("${test[@]}" clang-format clang-tidy git parallel)
 page=("${run[@]}" chromium fonts-dejavu-core python3)
 bench=("${run[@]}" libbenchmark-dev liblbfgs-dev libsisl-dev python3-scipy)
 

@@ -4,47 +4,33 @@ namespace batten {
 
 const char kSolverSkeleton[] = R"(#include "solvers/plugin.h"
 
-// The gradient method with steps that are halved until E falls by enough (Armijo), and doubled
-// after each iteration: put your own method into DoStep.
-class @CLASS@ final : public batten::SimpleStepper<@CLASS@> {
- public:
+// Gradient steps, halved until E falls by enough (Armijo): put your own method into DoStep.
+struct @CLASS@ final : batten::SimpleStepper<@CLASS@> {
   static constexpr char kName[] = "@NAME@";
   static constexpr char kSummary[] = "gradient steps, halved until E falls by enough";
   static constexpr char kSource[] = "Armijo, Pacific J. Math. 16, 1966";
   using SimpleStepper::SimpleStepper;
 
  private:
-  // Once, before iteration 0 is booked; it may move *x. An outcome ends the run.
-  std::optional<batten::Outcome> DoStart(Eigen::VectorXd* x) override {
-    const batten::Status status = objective()->EnergyAndGradient(*x, &energy_, &gradient_);
-    if (status != batten::Status::kOk) return Ended(status);
-    return std::nullopt;
-  }
-
-  // One iteration from *x. It prints nothing and stops by no rule of its own: who calls it books
-  // *x afterwards. Where an evaluation is refused, *x must still be what was booked last.
+  // One iteration. *x is booked afterwards; where an evaluation is refused it stays as it was.
   std::optional<batten::Outcome> DoStep(Eigen::VectorXd* x) override {
-    for (; step_ > 1e-20; step_ *= 0.5) {
+    double energy = 0.0, trial_energy = 0.0;
+    batten::Status status = objective()->EnergyAndGradient(*x, &energy, &gradient_);
+    if (status != batten::Status::kOk) return Ended(status);
+    for (step_ *= 2.0; step_ > 1e-20; step_ *= 0.5) {
       const Eigen::VectorXd trial = *x - step_ * gradient_;
-      double energy = 0.0;
-      batten::Status status = objective()->Energy(trial, &energy);
+      status = objective()->Energy(trial, &trial_energy);
+      if (status == batten::Status::kStop) return Ended(status);
       if (status == batten::Status::kNonFinite) continue;
-      if (status != batten::Status::kOk) return Ended(status);
-      if (!(energy < energy_ - 1e-4 * step_ * gradient_.squaredNorm())) continue;
-      status = objective()->EnergyAndGradient(trial, &energy_, &gradient_);
-      if (status != batten::Status::kOk) return Ended(status);
+      if (!(trial_energy < energy - 1e-4 * step_ * gradient_.squaredNorm())) continue;
       *x = trial;
-      step_ *= 2.0;
       return std::nullopt;
     }
     return batten::Outcome{batten::StopReason::kLineSearchEnded, "no step lowers E"};
   }
-
-  double energy_ = 0.0;
-  Eigen::VectorXd gradient_;
   double step_ = 1.0;
+  Eigen::VectorXd gradient_;
 };
-
 BATTEN_PLUGIN(registry) { registry->AddSolver<@CLASS@>(); }
 )";
 
@@ -57,25 +43,20 @@ const char kTermSkeleton[] = R"(#include "solvers/plugin.h"
 
 // sum_i w_i |C(t_i) - Q_i|^2, the distance from the data: put your own residual into operator().
 struct @CLASS@ : batten::TermAtDataPoints {
-  // Affine in the control points and alike for all coordinates: compiled to banded rows. Where your
-  // residual is not, take this line away.
-  static constexpr bool kAffine = true;
+  static constexpr bool kAffine = true;  // in the control points; goes where yours is not
   using TermAtDataPoints::TermAtDataPoints;
   static batten::TermInfo Info() {
     return batten::MakeTermInfo("@NAME@", "distance from the data at their parameters",
                                 "Piegl & Tiller, The NURBS Book, sec. 9.4.1");
   }
-  // Derivatives of any kind are read from this: T is whatever computes them. False where the
-  // residual has no value.
-  template <typename SiteType, typename T>
+  template <typename SiteType, typename T>  // T: whatever computes derivatives
   bool operator()(const SiteType& site, const T* const* control_points, T* residuals) const {
     for (int c = 0; c < site.dimension(); ++c) {
       residuals[c] = site.root_weight() * (site.Curve(control_points, c) - site.point(c));
     }
-    return true;
+    return true;  // false: no value there
   }
 };
-
 BATTEN_PLUGIN(registry) { batten::AddTerm<@CLASS@>(registry); }
 )";
 

@@ -235,6 +235,18 @@ TEST_F(ReportDocumentTest, DrawsRunsOfBenchByTheirInstancesAlikeOnesOnce) {
   EXPECT_EQ(curves["problems"]["3"]["points"], json::parse("[[5, 6]]"));
 }
 
+TEST_F(ReportDocumentTest, ReadsIteratesOfManyControlPoints) {
+  constexpr int kPoints = 200'000;  // 5 MB a line
+  std::string points = "[0.123456789012345, 0]";
+  for (int i = 1; i < kPoints; ++i) points += ", [0.123456789012345, " + std::to_string(i) + "]";
+  Write("cells.jsonl", "{\"key\": \"a\"}\n");
+  Write("iterates/a.jsonl", "{\"iteration\": 0, \"control_points\": [" + points + "]}\n" +
+                                "{\"iteration\": 5, \"control_points\": [" + points + "]}\n");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Curves()["runs"]["a"]["iterations"], json::parse("[0, 5]"));
+  EXPECT_EQ(Curves()["runs"]["a"]["points"][1].size(), 2u * kPoints);
+}
+
 TEST_F(ReportDocumentTest, NamesTheLineOfABrokenIterate) {
   Write("cells.jsonl", "{\"key\": \"a\"}\n");
   Write("iterates/a.jsonl", "{\"iteration\": 0, \"control_points\": [[1, 2], [3]]}\n");

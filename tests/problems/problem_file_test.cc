@@ -247,7 +247,11 @@ TEST_F(ProblemFile, RefusesTextThatIsNotOneJsonValue) {
   EXPECT_THAT(Refusal("{\"name\": 1e999}"), HasSubstr("1e999"));
   EXPECT_THAT(Refusal(""), HasSubstr("found nothing to read"));
   EXPECT_EQ(Refusal(R"({"name": "a", "spline": {"degree": 3, "degree": 4}})"),
-            "key \"degree\" stands twice in one object; allowed: once");
+            "/spline: key \"degree\" stands twice; allowed: once");
+  EXPECT_EQ(Refusal(R"({"a": 1, "a": 2})"), "/: key \"a\" stands twice; allowed: once");
+  // Alike keys in different objects are none that stands twice.
+  EXPECT_EQ(Refusal(R"({"a": [{"k": 1}, [3, []], {"k": {"k": [5, {"b": 1, "c": 2, "b": 3}]}}]})"),
+            "/a/2/k/k/1: key \"b\" stands twice; allowed: once");
   EXPECT_THAT(Refusal("{\"na\xff\x01me\": 1}"), StartsWith("line 1, column "));
   // Deeply nested text must neither be printed nor overflow the stack.
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');

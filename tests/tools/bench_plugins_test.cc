@@ -130,6 +130,7 @@ TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
   suite["solvers"] = {"faulty", "cg"};
   if (fault.plugin == "fault_ignores_stop") suite["budgets"]["iterations"] = 30;
   if (fault.plugin == "fault_sleeper") suite["budgets"]["wall_seconds"] = 1.0;
+  if (fault.plugin == "fault_worker") suite["budgets"]["cpu_seconds"] = 1.0;
   const Ended ended = RunSuite(suite);
   EXPECT_EQ(ended.status, fault.status) << ended.err << ended.out;
   EXPECT_THAT(ended.out, HasSubstr(fault.note));
@@ -161,6 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"fault_crasher", "crashed", "crashed", 0, "ended by signal 6 (Aborted)"},
         Fault{"fault_throws", "crashed", "crashed", 0, "threw an exception: no such luck"},
         Fault{"fault_sleeper", "wall_limit", "wall_limit", 0, "of wall time"},
+        Fault{"fault_worker", "cpu_limit", "cpu_limit", 0, "of processor time"},
         Fault{"fault_nan", "", "no_finite_end", 0, "its end is no finite number"},
         Fault{"fault_liar", "", "claim_fails", 3, "claim fails: "},
         Fault{"fault_ignores_stop", "", "ignores_stop", 0, "ignores stop: "},

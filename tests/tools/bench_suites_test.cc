@@ -114,9 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
                  {"/seeds/start/1: found 1.5"}},
         BadSuite{"ExclusionOfNothing",
                  [](json* s) {
-                   (*s)["exclude"] = {{{"solvers", {"gim*"}}}};
+                   (*s)["exclude"] = {{{"solvers", {"cg", "gmi"}}}};
                  },
-                 {"/exclude/0: matches nothing"}},
+                 {"/exclude/0/solvers/1: unknown solver \"gmi\"", "did you mean "}},
+        BadSuite{"ExclusionOfNoProblem",
+                 [](json* s) {
+                   (*s)["exclude"] = {{{"solvers", {"*"}}, {"problems", {"wev*"}}}};
+                 },
+                 {"/exclude/0/problems/0: unknown problem \"wev*\""}},
         BadSuite{"ExclusionOfAll",
                  [](json* s) {
                    (*s)["exclude"] = {{{"solvers", {"*"}}}};

@@ -2,6 +2,7 @@
 // the installed package is (.ci/run).
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/tools/program.h"
@@ -32,8 +33,9 @@ TEST(New, WritesASolverAndATerm) {
     ASSERT_EQ(ended.status, 0) << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("batten check " + name + "/build/" + name + ".so"));
     const std::string source = ReadFile(folder / (name + "/" + name + ".cc"));
-    EXPECT_THAT(source, HasSubstr(kind == "solver" ? "class MySolver" : "struct MyTerm"));
+    EXPECT_THAT(source, HasSubstr(kind == "solver" ? "struct MySolver" : "struct MyTerm"));
     EXPECT_THAT(source, HasSubstr("\"" + name + "\""));
+    EXPECT_LE(std::count(source.begin(), source.end(), '\n'), kind == "solver" ? 30 : 20);
     const std::string build = ReadFile(folder / (name + "/CMakeLists.txt"));
     EXPECT_THAT(build, HasSubstr("batten_add_plugin(" + name + " " + name + ".cc)"));
     EXPECT_THAT(build, HasSubstr("add_test(NAME conformance"));
