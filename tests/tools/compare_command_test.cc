@@ -165,6 +165,48 @@ TEST_F(CompareCommand, TakesProblemFiles) {
   ExpectRefused(Compare({"--problems=" + bad}), {"--problems: ", "control_points"});
 }
 
+TEST_F(CompareCommand, RefusesBadDataBeforeItRunsAnything) {
+  const auto refuse = [&](const std::string& points, const std::vector<std::string>& parts) {
+    folder_.Write("bad.csv", points);
+    const std::string bad = WriteProblem("bad", "bad.csv", R"("control_points": 5)");
+    // The good one comes first.
+    ExpectRefused(Compare({"--problems=rhino," + bad, "--solvers=cg"}), parts);
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  const std::string file = "bad.csv";
+  refuse("", {file + ":1:", "no data point"});
+  refuse("x,y\n1,2\n", {"found 1 data point", "at least 2"});
+  refuse("x,y\n0,0\n1,nan\n2,0\n", {file + ":3:2:", "\"nan\""});
+  refuse("x,y\n0,0\ninf,1\n2,0\n", {file + ":3:1:", "\"inf\""});
+  refuse("x,y\n0,0\n1\n2,0\n", {file + ":3:", "row length 1"});
+  refuse("x,y\n0,0\n1,2m\n2,0\n", {file + ":3:2:", "\"2m\""});
+  refuse("x,y\n0,0\n1e308,1\n2,0\n", {file + ":3:1:", "1e308"});
+  ExpectRefused(Compare({"--problems=rihno"}), {"--problems: ", "did you mean rhino"});
+  ExpectRefused(Compare({"--problems=rhino", "--solvers=lbgfs"}),
+                {"--solvers: ", "did you mean lbfgs"});
+  ExpectRefused(Compare({"--problems=rhino", "--problem=cat"}), {"problem", "did you mean"});
+}
+
+TEST_F(CompareCommand, TellsAFullDiskAndKeepsWhatIsWhole) {
+  Program::Streams streams;
+  streams.file_size = 300;  // less than any table
+  const Ended ended = Program({"compare", "--problems=rhino", "--solvers=banded_qr,cg",
+                               "--repetitions=1", "--out=" + out_},
+                              streams)
+                          .Wait();
+  EXPECT_EQ(ended.signal, 0);
+  EXPECT_EQ(ended.status, 2) << ended.err;
+  EXPECT_EQ(Lines(ended.err).size(), 1u) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("File too large"));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out_)) {
+    // Only the rows are written as the runs end: a torn last one is run again.
+    if (!entry.is_regular_file() || entry.path().filename() == "cells.jsonl") continue;
+    ADD_FAILURE() << entry.path() << " is half written, or a file of a part of the work";
+  }
+  EXPECT_EQ(Compare({"--problems=rhino", "--solvers=banded_qr,cg", "--resume"}).status, 0);
+  EXPECT_EQ(json::parse(ReadFile(out_ + "/table.json"))["rows"].size(), 2u);
+}
+
 TEST_F(CompareCommand, RefusesAFolderThatCannotBe) {
   const std::string file = folder_.Write("file", "");
   ExpectRefused(RunBatten({"compare", "--problems=rhino", "--out=" + file + "/out"}),

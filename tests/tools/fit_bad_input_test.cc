@@ -97,6 +97,31 @@ TEST(FitCommand, RefusesPathsThatCannotBeRead) {
                 {"--knots: ", "No such file"});
 }
 
+TEST(FitCommand, RefusesWhatItMayNotReadOrWrite) {
+  const TemporaryFolder folder;
+  const std::string points = "x,y\n0,0\n1,1\n2,0\n3,1\n4,0\n";
+  const std::string file = folder.Write("points.csv", points);
+  const std::string old = folder.Write("fit.json", "precious");
+  Program::Streams streams;
+  streams.obeys_permissions = true;
+  const auto fit = [&](const std::string& flag) {
+    return Program({"fit", file, "--control_points=4", flag}, streams).Wait();
+  };
+  ASSERT_EQ(fit("--out=" + (folder / "new.json")).status, 0);
+  chmod(file.c_str(), 0);
+  ExpectRefused(fit("--quiet"), {file + ": cannot be read: Permission denied"});
+  chmod(file.c_str(), 0400);
+  chmod((folder / "").c_str(), 0500);
+  for (const std::string flag : {"out", "trace", "iterates", "figure"}) {
+    const std::string target = folder / (flag == "figure" ? "fit.svg" : "fit.txt");
+    ExpectRefused(fit("--" + flag + "=" + target), {"--" + flag + ": ", "Permission denied"});
+  }
+  ExpectRefused(fit("--out=" + old), {"--out: ", "Permission denied"});
+  chmod((folder / "").c_str(), 0700);
+  EXPECT_EQ(ReadFile(old), "precious");
+  EXPECT_THAT(folder.Names(), ::testing::ElementsAre("fit.json", "new.json", "points.csv"));
+}
+
 TEST(FitCommand, RefusesStandardInputThatCannotBeRead) {
   const TemporaryFolder folder;
   Program::Streams streams;

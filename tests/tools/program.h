@@ -3,7 +3,9 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -94,6 +96,7 @@ class Program {
     int output_file = -1;
     rlim_t file_size = RLIM_INFINITY;  // of the largest file it may write, in bytes
     rlim_t memory = RLIM_INFINITY;     // of its addresses, in bytes
+    bool obeys_permissions = false;    // of files and folders, though root runs the tests
   };
 
   explicit Program(std::vector<std::string> arguments) : Program(std::move(arguments), Streams()) {}
@@ -114,6 +117,10 @@ class Program {
     dup2(Create("error"), 2);
     Limit(RLIMIT_FSIZE, streams.file_size);
     Limit(RLIMIT_AS, streams.memory);
+    if (streams.obeys_permissions) {
+      prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
+      prctl(PR_CAPBSET_DROP, CAP_DAC_READ_SEARCH);
+    }
     execv(BATTEN_BINARY, pointers.data());
     _exit(126);
   }
