@@ -187,10 +187,15 @@ const kHover = { name: 'hover', select: { type: 'point', on: 'pointerover', near
 const kPick = { name: 'pick', select: { type: 'point', fields: ['solver'] }, bind: 'legend' };
 
 // Lines of rows {solver, run, px, py, ...}, one per run; `mark` is the shape at one.
-function lineSpec({ width, height, solvers, x, y, tooltip, interpolate = 'linear' }) {
+function lineSpec({ width, height, solvers, data, x, y, tooltip, interpolate = 'linear' }) {
   const shared = { x, y, color: colours(solvers, width) };
   const dash = { ...looksOf(solvers, 'strokeDash', kDashes) };
   const bright = { condition: { param: 'pick', value: 1 }, value: 0.12 };
+  const marks = {
+    transform: [{ filter: 'datum.mark' }],
+    mark: { type: 'point', filled: true, size: 40, clip: true },
+    encoding: { ...shared, opacity: bright, shape: { field: 'mark', type: 'nominal', scale: null } },
+  };
   return {
     width, height, autosize: { type: 'fit', contains: 'padding' }, data: { name: 'rows' },
     layer: [
@@ -198,10 +203,8 @@ function lineSpec({ width, height, solvers, x, y, tooltip, interpolate = 'linear
                                         invalid: 'break-paths-filter-domains' },
         encoding: { ...shared, strokeDash: { ...dash, legend: shared.color.legend }, opacity: bright,
                     detail: { field: 'run' } } },
-      { transform: [{ filter: 'datum.mark' }],
-        mark: { type: 'point', filled: true, size: 40, clip: true },
-        encoding: { ...shared, opacity: bright,
-                    shape: { field: 'mark', type: 'nominal', scale: null } } },
+      // Vega warns of a layer without a row.
+      ...(data.some(row => row.mark) ? [marks] : []),
       { params: [kHover], mark: { type: 'point', filled: true, size: 60, clip: true },
         encoding: { ...shared, tooltip,
                     opacity: { condition: { param: 'hover', empty: false, value: 1 }, value: 0 } } },

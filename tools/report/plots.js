@@ -57,7 +57,7 @@ function convergencePlot(settings) {
       caption, data, zooms: true, logs: { px: logX, py: up.log },
       columns: { problem: 'problem', solver: 'solver', key: 'key', iteration: 'iteration',
                  px: along.title, py: up.title },
-      spec: lineSpec({ width, height: heightFor(width, solvers), solvers, x, y, tooltip: [
+      spec: lineSpec({ width, height: heightFor(width, solvers), solvers, data, x, y, tooltip: [
         { field: 'solver', title: 'solver' }, { field: 'label', title: 'run' },
         { field: 'iteration', title: 'iteration' },
         { field: 'px', title: along.title, format: '.5~g' },
@@ -232,7 +232,7 @@ function shareSpec({ width, solvers, data, caption, logX, x, y }) {
     caption, data, zooms: true, logs: { px: logX, py: false },
     columns: { solver: 'solver', px: x, py: y },
     spec: lineSpec({
-      width, height: heightFor(width, solvers), solvers, interpolate: 'step-after',
+      width, height: heightFor(width, solvers), solvers, data, interpolate: 'step-after',
       x: axisOf('px', x, logX), y: axisOf('py', y, false, { scale: { domain: [0, 1.02] } }),
       tooltip: [{ field: 'solver', title: 'solver' }, { field: 'px', title: x, format: '.4~g' },
                 { field: 'py', title: y, format: '.3f' }],
