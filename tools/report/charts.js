@@ -25,7 +25,8 @@ const whenSeen = new IntersectionObserver(entries => {
 class Plot {
   // build(width): {spec, data, columns, caption} or {caption} where there is nothing to draw.
   // `data` is what the spec's dataset "rows" holds, `columns` what of it is downloaded, by title.
-  constructor(title, build) {
+  // `controls` stand above it.
+  constructor(title, build, controls = null) {
     Object.assign(this, { title, build, isSeen: false, isStale: true, isDone: Promise.resolve() });
     this.view = element('div', {
       class: 'view', tabindex: 0, role: 'group', onkeydown: event => this.key(event),
@@ -40,7 +41,7 @@ class Plot {
       this.button('Show all', () => this.reset()), this.tableButton,
       this.button('CSV', () => this.saveCsv()), this.button('SVG', () => this.saveSvg()),
       this.button('PNG', () => this.savePng()));
-    this.figure = element('figure', {}, element('h3', {}, title), this.view, this.buttons,
+    this.figure = element('figure', {}, element('h3', {}, title), controls, this.view, this.buttons,
                           this.table, this.caption);
     this.figure.plot = this;
     allPlots.push(this);

@@ -88,10 +88,13 @@ function addProfiles() {
   const hasTraces = rows.some(traceOf);
   const settings = { measure: 'iteration', target: hasTraces ? 1e-6 : 'stop' };
   // Per kind of parameters; where there are several minima those to the own basin beside.
-  const plots = allKinds.flatMap(kind => (hasBasins(kind) ? [false, true] : [false])
-    .map(own => ({ kind, pair: [profilePlot(settings, kind, own),
-                                ...(hasTraces ? [runtimePlot(settings, kind, own)] : [])] })));
-  const refresh = () => plots.forEach(({ pair }) => pair.forEach(plot => plot.refresh()));
+  const kinds = allKinds.map(kind => {
+    const goals = hasBasins(kind) ? [false, true] : [false];
+    return [...goals.map(own => profilePlot(settings, kind, own)),
+            ...(hasTraces ? goals.map(own => runtimePlot(settings, kind, own)) : []),
+            pairPlot(settings, kind)];
+  });
+  const refresh = () => kinds.flat().forEach(plot => plot.refresh());
   const targets = [['stop', 'what the run was asked for'],
                    ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t.toExponential()}`]) : [])];
   const controls = element('div', { class: 'row' },
@@ -104,12 +107,8 @@ function addProfiles() {
       refresh();
     }));
   const few = element('p', {}, 'Profiles need two problems or more.');
-  const box = element('div', {}, controls, element('div', { class: 'plots' },
-    ...allKinds.flatMap(kind => {
-      const pairs = plots.filter(plot => plot.kind === kind).map(({ pair }) => pair);
-      // Best and own basin side by side.
-      return pairs[0].flatMap((_, k) => pairs.map(pair => pair[k].figure));
-    })));
+  const box = element('div', {}, controls, ...kinds.map(plots =>
+    element('div', { class: 'plots' }, ...plots.map(plot => plot.figure))));
   addSection('Profiles', element('div', {}, few, box), () => {
     const isMany = new Set(chosen.map(row => row.group)).size >= 2;
     few.hidden = isMany;

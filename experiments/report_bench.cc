@@ -1,4 +1,4 @@
-#include "experiments/report_basins.h"
+#include "experiments/report_bench.h"
 
 #include <cmath>
 
@@ -6,23 +6,24 @@
 
 namespace batten {
 
-BasinMinima ReadBasinMinima(const std::string& folder) {
-  BasinMinima minima;
+BenchFacts ReadBenchFacts(const std::string& folder) {
+  BenchFacts facts;
   BenchData data;
   std::string ignored;
-  if (!ReadBenchData(folder, &data, &ignored)) return minima;
+  if (!ReadBenchData(folder, &data, &ignored)) return facts;
   const BenchResults results = CollectResults(data);
   for (const BenchRun& run : results.runs) {
     const BenchInstance& instance = results.instances[run.instance];
     if (!instance.has_basins || !std::isfinite(instance.minimum_energy)) continue;
     for (const nlohmann::json* row : run.rows) {
       const std::string key = TextAt(*row, "key");
-      minima.best[key] = instance.minimum_energy;
+      facts.best[key] = instance.minimum_energy;
       if (run.basin < 0) continue;
-      minima.own[key] = instance.basin_energies[static_cast<std::size_t>(run.basin)];
+      facts.own[key] = instance.basin_energies[static_cast<std::size_t>(run.basin)];
+      facts.basin[key] = run.basin + 1;
     }
   }
-  return minima;
+  return facts;
 }
 
 }  // namespace batten
