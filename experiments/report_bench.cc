@@ -14,9 +14,10 @@ BenchFacts ReadBenchFacts(const std::string& folder) {
   const BenchResults results = CollectResults(data);
   for (const BenchRun& run : results.runs) {
     const BenchInstance& instance = results.instances[run.instance];
-    if (!instance.has_basins || !std::isfinite(instance.minimum_energy)) continue;
     for (const nlohmann::json* row : run.rows) {
       const std::string key = TextAt(*row, "key");
+      if (instance.unit_seconds > 0.0) facts.unit_seconds[key] = instance.unit_seconds;
+      if (!instance.has_basins || !std::isfinite(instance.minimum_energy)) continue;
       facts.best[key] = instance.minimum_energy;
       if (run.basin < 0) continue;
       facts.own[key] = instance.basin_energies[static_cast<std::size_t>(run.basin)];

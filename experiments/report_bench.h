@@ -8,6 +8,7 @@ namespace batten {
 
 /// What the tables of a folder of `bench` know of its runs beside their rows, by the keys of these.
 struct BenchFacts {
+  std::map<std::string, double> unit_seconds;  ///< Of one evaluation of E, where it was measured.
   // Where there is no direct answer, so that E may have several minima:
   std::map<std::string, double> best;  ///< E of the instance's best basin.
   std::map<std::string, double> own;   ///< E of the basin that the run ends in, where it is known.

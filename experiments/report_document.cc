@@ -25,10 +25,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The instances that rows belong to, each with the E that its runs are held against.
 struct Group {
-  OrderedJson names;          // problem, terms, seeds of data and start
-  double direct = kInfinity;  // lowest E* of a direct answer
-  double best = kInfinity;    // of bench: E of the best basin
-  double lowest = kInfinity;  // lowest E that a run has seen
+  OrderedJson names;                   // problem, terms, seeds of data and start
+  double direct = kInfinity;           // lowest E* of a direct answer
+  double best = kInfinity;             // of bench: E of the best basin
+  double lowest = kInfinity;           // lowest E that a run has seen
+  double unit_seconds = std::nan("");  // of bench: of one evaluation of E
 
   bool is_direct() const { return std::isfinite(direct); }
   bool has_basins() const { return !is_direct() && std::isfinite(best); }
@@ -129,6 +130,8 @@ void FolderReader::FindGroups() {
     if (std::isfinite(direct)) group.direct = std::min(group.direct, direct);
     const auto basin = bench_.best.find(TextField(cell, "key"));
     if (basin != bench_.best.end()) group.best = std::min(group.best, basin->second);
+    const auto unit = bench_.unit_seconds.find(TextField(cell, "key"));
+    if (unit != bench_.unit_seconds.end()) group.unit_seconds = unit->second;
     const double energy = NumberField(cell, "energy");
     if (std::isfinite(energy)) group.lowest = std::min(group.lowest, energy);
     for (const ReportTrace::Row& row : traces_[k].rows) {
@@ -253,6 +256,7 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
     shown["minimum"] = std::isfinite(group.minimum()) ? OrderedJson(group.minimum()) : nullptr;
     shown["direct"] = group.is_direct();
     shown["basins"] = group.has_basins();
+    if (std::isfinite(group.unit_seconds)) shown["unit_seconds"] = group.unit_seconds;
     groups.push_back(std::move(shown));
   }
   std::error_code ignored;

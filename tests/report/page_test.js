@@ -64,6 +64,7 @@
     testLooks();
     testProfiles();
     await testPairProfiles({ expect, change, selectOf });
+    await testWorkUnits({ expect, change, selectOf });
     if (doc.bench_notes.length > 0) await testBench();
     await testZoom();
     await testChoices();
@@ -165,7 +166,7 @@
 
   async function testChoices() {
     const plot = allPlots.find(p => p.title === 'Convergence');
-    for (const along of ['evaluations', 'seconds', 'cpu_seconds', 'iteration']) {
+    for (const along of [...selectOf('Along').options].map(option => option.value).reverse()) {
       change(selectOf('Along'), along);
       await drawAll();
       const number = plot.drawn.data?.length ?? 0;

@@ -1,5 +1,5 @@
-// Pairs of solvers on the page, against counts made here from the rows as they stand, and against the
-// tables of bench.
+// Pairs of solvers and work units on the page, against counts made here from the rows as they stand, and
+// against the tables of bench.
 
 // The numbers that the caption of a pair profile says.
 function pairCounts(plot) {
@@ -122,4 +122,45 @@ async function testPairProfiles({ expect, change, selectOf }) {
         .every((column, k) => Math.abs(withinTwo[k] / sum.instances - Number(row[column])) < 1e-4));
     }
   }
+}
+
+// Work units and basins, which the rows of bench do not have, are those of its table.
+async function testWorkUnits({ expect, change, selectOf }) {
+  const offered = label => [...selectOf(label).options].some(option => option.value === 'work_units');
+  const table = doc.tables.find(({ name, columns }) => name === 'table.csv' && columns.includes('work_units'));
+  expect('work units are offered where there are some', ['Along', 'Measured by'].every(label =>
+    offered(label) === Boolean(table)));
+  if (!table) return;
+  const fields = ['problem', 'terms', 'data_seed', 'start_seed', 'solver', 'seed'];
+  const idOf = row => fields.map(field => row[field]).join('|');
+  const lines = new Map(table.rows.map(list => Object.fromEntries(list.map((value, k) => [table.columns[k], value])))
+    .map(line => [idOf(line), line]));
+  const runs = new Map(rows.map(row => [idOf(row), rows.filter(other => idOf(other) === idOf(row))]));
+  const known = [...runs].filter(([id, some]) => lines.get(id)?.work_units && !some.some(isOverlapped));
+  const isNear = (a, b) => Math.abs(a - b) <= 1e-12 * Math.abs(b);
+  expect('work units of runs are those of table.csv', known.length > 10 && known.every(([id, some]) =>
+    isNear(median(some.map(row => row.work_units)), Number(lines.get(id).work_units))));
+  expect('basins are those of table.csv', [...runs].every(([id, some]) =>
+    !lines.has(id) || some.every(row => String(row.basin ?? '') === lines.get(id).basin)));
+  expect('some end in a second basin', rows.some(row => row.basin === 2));
+
+  const unitOfLine = row => {
+    const line = lines.get(idOf(row));
+    return Number(line.seconds) / Number(line.work_units);
+  };
+  const plot = allPlots.find(p => p.title === 'Convergence');
+  const drawn = async along => {
+    change(selectOf('Along'), along);
+    await plot.draw();
+    return plot.drawn.data.filter(point => point.iteration > 0);
+  };
+  const units = await drawn('work_units'), seconds = await drawn('seconds');
+  expect('convergence along work units', units.length > 10 && units.length === seconds.length && units.every((point, k) => {
+    const row = rows.find(({ key }) => key === point.key);
+    return isNear(point.px * unitOfLine(row), seconds[k].px);
+  }));
+  change(selectOf('Along'), 'iteration');
+  const reached = rows.filter(row => costOf(row, 0.1, 'seconds', false) < Infinity);
+  expect('work units to a target', reached.length > 10 && reached.every(row =>
+    isNear(costOf(row, 0.1, 'work_units', false) * unitOfLine(row), costOf(row, 0.1, 'seconds', false))));
 }

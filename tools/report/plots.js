@@ -1,11 +1,25 @@
 // The plots that are computed from the runs that pass the filters.
 
+// `name` is that of the choice, `column` the place in a trace (docs/report.md).
 const kAlong = {
-  iteration: { title: 'iteration', many: 'iterations', column: 1 },
-  evaluations: { title: 'evaluations of E, gradient and Jacobian, products', column: 2 },
-  seconds: { title: 'wall time of the solver (s)', column: 3, isTime: true },
-  cpu_seconds: { title: 'processor time of the solver (s)', column: 4, isTime: true },
+  iteration: { name: 'iterations', title: 'iteration', many: 'iterations', column: 1 },
+  evaluations: { name: 'evaluations', title: 'evaluations of E, gradient and Jacobian, products', column: 2 },
+  work_units: { name: 'work units', many: 'work units', column: 3, isTime: true,
+                title: 'work units: wall time of the solver over that of one evaluation of E' },
+  seconds: { name: 'wall time', title: 'wall time of the solver (s)', column: 3, isTime: true },
+  cpu_seconds: { name: 'processor time', title: 'processor time of the solver (s)', column: 4, isTime: true },
 };
+const measures = Object.keys(kAlong).filter(measure => measure !== 'work_units' || hasWorkUnits)
+  .map(measure => [measure, kAlong[measure].name]);
+// Seconds in the unit of the measure; 1 for what is no time. null: that unit was not measured.
+const unitOf = (row, measure) => measure === 'work_units' ? doc.groups[row.group].unit_seconds ?? null : 1;
+// The runs whose costs can be shown, and why others are left out.
+function withCosts(list, measure) {
+  const known = list.filter(row => unitOf(row, measure) !== null);
+  const timed = kAlong[measure].isTime ? known.filter(row => !isOverlapped(row)) : known;
+  return { timed, left: [[known.length - timed.length, 'timed while other runs went on (overlapped)'],
+                         [list.length - known.length, 'where no evaluation of E was timed']] };
+}
 const kUp = {
   gap: { title: 'gap (E − E*) / (E(start) − E*), no unit', log: true },
   excess: { title: 'E − E* (unit of the data, squared)', log: true },
@@ -30,9 +44,9 @@ function convergencePlot(settings) {
     const all = chosen.filter(row => row.group === settings.group);
     const group = doc.groups[settings.group] ?? {};
     const withTrace = all.filter(traceOf);
-    const timed = withTrace.filter(row => !(along.isTime && isOverlapped(row)));
+    const { timed, left } = withCosts(withTrace, settings.along);
     const drawn = timed.slice(0, kMostLines);
-    const data = drawn.flatMap((row, run) => convergenceRows(row, run, along, settings, group));
+    const data = drawn.flatMap((row, run) => convergenceRows(row, run, settings, group));
     const atEdge = settings.logX && putStartsAtEdge(data);
     putMarks(data);
     const solvers = allSolvers.filter(solver => drawn.some(row => row.solver === solver));
@@ -48,8 +62,7 @@ function convergencePlot(settings) {
         ? ' Where E − E* is below the rounding of E, that is drawn.' : '') +
       excludedText([
         [all.length - withTrace.length, 'without a trace (skipped, crashed, or none was kept)'],
-        [withTrace.length - timed.length, 'timed while other runs went on (overlapped)'],
-        [timed.length - drawn.length, `beyond the first ${kMostLines}: use the filters`]]);
+        ...left, [timed.length - drawn.length, `beyond the first ${kMostLines}: use the filters`]]);
     if (data.length === 0) return { caption };
     const logX = settings.logX;
     const x = axisOf('px', along.title, logX), y = axisOf('py', up.title, up.log);
@@ -66,9 +79,10 @@ function convergencePlot(settings) {
   });
 }
 
-function convergenceRows(row, run, along, settings, group) {
+function convergenceRows(row, run, settings, group) {
   const [, iterations, , , , excess, gradients] = traceOf(row);
-  const xs = traceOf(row)[along.column];
+  const unit = unitOf(row, settings.along);
+  const xs = traceOf(row)[kAlong[settings.along].column].map(value => value === null ? null : value / unit);
   const first = excess[0];
   const label = [row.key, isNumber(row.repetition) ? `repetition ${row.repetition}` : null,
                  isNumber(row.start_seed) ? `start ${row.start_seed}` : null]
@@ -101,7 +115,7 @@ function endPlot(settings) {
     const along = kAlong[settings.along];
     const cost = settings.along === 'iteration' ? 'iterations' : settings.along;
     const ran = chosen.filter(row => row.verdict !== 'skipped');
-    const timed = ran.filter(row => !(along.isTime && isOverlapped(row)));
+    const { timed, left } = withCosts(ran, settings.along);
     const data = timed.map(row => ({ ...pick(row, ['problem', 'solver', 'stop', 'key']),
                                      px: row[cost], py: row.gradient_norm / row.start_gradient_norm }))
       .filter(row => row.px > 0 && row.py > 0 && isNumber(row.px) && isNumber(row.py));
@@ -109,7 +123,7 @@ function endPlot(settings) {
     const title = '|g| at the end over |g| at the start, no unit';
     const caption = `${title}, against ${along.title}: each run a mark.` +
       excludedText([[chosen.length - ran.length, 'skipped'],
-                    [ran.length - timed.length, 'timed while other runs went on (overlapped)'],
+                    ...left,
                     [timed.length - data.length, 'without these numbers, or with 0']]);
     if (data.length === 0) return { caption };
     return {

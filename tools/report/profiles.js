@@ -4,8 +4,8 @@
 // Infinity: it does not come there. null: there is nothing to tell it by. `own`: gaps are to the
 // minimum of the basin that the run itself ends in, where the folder tells which.
 function costOf(row, target, measure, own) {
-  // A start that is there already costs 0: one unit, or tick of the clock, then stands for nothing.
-  const atLeast = value => Math.max(value, kAlong[measure].isTime ? 1e-9 : 1);
+  // A start that is there already costs 0: one call, or tick of the clock, then stands for nothing.
+  const atLeast = value => Math.max(value, kAlong[measure].isTime ? 1e-9 / unitOf(row, measure) : 1);
   if (target === 'stop') {
     const value = row[measure === 'iteration' ? 'iterations' : measure];
     return row.verdict !== 'reached' ? Infinity : isNumber(value) ? atLeast(value) : null;
@@ -14,7 +14,7 @@ function costOf(row, target, measure, own) {
   const trace = traceOf(row);
   if (!trace) return Infinity;
   const value = ((own && trace[8]) || trace[7])[kAlong[measure].column - 1][kTargets.indexOf(target)];
-  return isNumber(value) ? atLeast(value) : Infinity;
+  return isNumber(value) ? atLeast(value / unitOf(row, measure)) : Infinity;
 }
 
 // Fits with fixed, free and projected parameters are different problems.
@@ -24,19 +24,19 @@ const kindOf = row => kindOfGroup[row.group];  // skipped runs do not say it
 const allKinds = inOrder(rows.map(kindOf));
 const hasBasins = kind => rows.some(row => kindOf(row) === kind && traceOf(row)?.[8]);
 
-// The instances of one kind of parameters with the runs of the solvers that apply to one of them;
-// those that were timed beside others not by time.
-function instances(measure, kind) {
+// The instances of one kind of parameters with the runs of the solvers that apply to one of them, or
+// of those that are given; those that were timed beside others not by time.
+function instances(measure, kind, solvers = null) {
   const here = chosen.filter(row => kindOf(row) === kind);
   const applying = new Set(here.filter(row => row.verdict !== 'skipped').map(row => row.solver));
-  const runs = here.filter(row => applying.has(row.solver));
-  const list = kAlong[measure].isTime ? runs.filter(row => !isOverlapped(row)) : runs;
+  const runs = here.filter(row => solvers ? solvers.includes(row.solver) : applying.has(row.solver));
+  const { timed, left } = withCosts(runs, measure);
   const byInstance = new Map();
-  for (const row of list) {
+  for (const row of timed) {
     if (!byInstance.has(row.instanceId)) byInstance.set(row.instanceId, new Map());
     byInstance.get(row.instanceId).set(row.solver, row);
   }
-  return { list: [...byInstance.values()], numOverlapped: runs.length - list.length };
+  return { list: [...byInstance.values()], left };
 }
 function profileTitle(what, kind, own) {
   return [what, kind && `${kind} parameters`, hasBasins(kind) && (own ? 'own basin' : 'best basin')]
@@ -75,7 +75,7 @@ function profilePlot(settings, kind, own) {
     if (own && target === 'stop') {
       return { caption: 'What a run is asked for is the same in all basins: see the plot to the best one.' };
     }
-    const { list, numOverlapped } = instances(measure, kind);
+    const { list, left } = instances(measure, kind);
     const solvers = solversOf(list);
     const costs = list.map(runs => solvers.map(solver =>
       (runs.has(solver) ? costOf(runs.get(solver), target, measure, own) : null) ?? Infinity));
@@ -87,7 +87,7 @@ function profilePlot(settings, kind, own) {
       failureText(list.flatMap(runs => [...runs.values()])) +
       basinText(own) + ` ${counted(unsolved, 'instance')} solved by none count for all. A profile of more than two ` +
       'solvers is no order of any two: for that there is the pair profile below.' +
-      excludedText([[numOverlapped, 'timed while other runs went on (overlapped)']]);
+      excludedText(left);
     return shareSpec({ width, solvers, data, caption, logX: true,
                        x: `tau: ${manyOf(measure)} over the least of all solvers, no unit`,
                        y: 'share of instances' });
@@ -98,21 +98,20 @@ function profilePlot(settings, kind, own) {
 function runtimePlot(settings, kind, own) {
   return new Plot(profileTitle('Runtime distribution', kind, own), width => {
     const { measure } = settings;
-    const { list, numOverlapped } = instances(measure, kind);
+    const { list, left } = instances(measure, kind);
     const solvers = solversOf(list);
-    const least = kAlong[measure].isTime ? 1e-7 : 1;
     const times = new Map(solvers.map(solver => [solver, list.flatMap(runs =>
       runs.has(solver) ? kTargets.map(target => costOf(runs.get(solver), target, measure, own))
-        .filter(cost => isNumber(cost)).map(cost => Math.max(cost, least)) : [])]));
+        .filter(isNumber) : [])]));
     const all = [...times.values()].flat();
-    const longest = Math.max(2 * least, ...all);
+    const longest = all.length > 0 ? Math.max(...all) : 1;
     const shortest = Math.min(longest / 2, ...all);
     const data = solvers.flatMap(solver =>
       steps(solver, times.get(solver), list.length * kTargets.length, shortest, longest * 1.2));
     const caption = `Share of ${counted(list.length * kTargets.length, 'pair')} of an instance and a ` +
       `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${manyOf(measure)}. ` +
       failureText(list.flatMap(runs => [...runs.values()])) + basinText(own) +
-      excludedText([[numOverlapped, 'timed while other runs went on (overlapped)']]);
+      excludedText(left);
     return shareSpec({ width, solvers, data, caption, logX: true, x: kAlong[measure].title,
                        y: 'share of instances and targets' });
   });
@@ -187,14 +186,15 @@ function firstPair(list, solvers, settings) {
   return [first, second ?? others[0]];
 }
 
-function pairCaption([a, b], { costs, alone, apart, unknown }, settings, kind) {
+function pairCaption([a, b], { costs, alone, apart, unknown }, leftRuns, settings, kind) {
   const times = holds => costs.filter(holds).length;
   const isNone = ([x, y]) => x === Infinity && y === Infinity;
   const several = rows.some(row => kindOf(row) === kind && hasSeveralMinima[row.group]);
-  const left = [[alone, 'to which one of them does not apply or that it did not run'],
-                [apart, 'where their ends are not known to be one minimum'],
-                [unknown, 'without these numbers']].filter(([number]) => number > 0)
-    .map(([number, text]) => `${counted(number, 'instance')} ${text}`);
+  const left = [[alone, 'instance', 'to which one of them does not apply, or without its run'],
+                [apart, 'instance', 'where their ends are not known to be one minimum'],
+                [unknown, 'instance', 'without these numbers'],
+                ...leftRuns.map(([number, text]) => [number, 'run', text])]
+    .filter(([number]) => number > 0).map(([number, what, text]) => `${counted(number, what)} ${text}`);
   return `${a} and ${b}, ${manyOf(settings.measure)} to ${targetText(settings.target)}: ` +
     `${a} needs less, or comes there alone, on ${times(([x, y]) => x < y)} of ` +
     `${counted(costs.length, 'instance')}, ${b} on ${times(([x, y]) => y < x)}; both need the same on ` +
@@ -223,7 +223,7 @@ function pairPlot(settings, kind) {
   const title = profileTitle('Pair profile', kind, true);
   const plot = new Plot(title, width => {
     const { measure } = settings;
-    const { list, numOverlapped } = instances(measure, kind);
+    const { list } = instances(measure, kind);
     const solvers = solversOf(list);
     // What filters take away is chosen anew.
     if (!pair.every(solver => solvers.includes(solver)) || pair.length === 0) {
@@ -231,10 +231,9 @@ function pairPlot(settings, kind) {
     }
     offer(solvers);
     if (pair.length === 0) return { caption: 'A pair needs two solvers that apply.' };
-    const compared = pairCosts(list, settings, pair);
-    const caption = pairCaption(pair, compared, settings, kind) +
-      (numOverlapped > 0
-        ? ` ${counted(numOverlapped, 'run')} timed while other runs went on (overlapped) do not count.` : '');
+    const both = instances(measure, kind, pair);
+    const compared = pairCosts(both.list, settings, pair);
+    const caption = pairCaption(pair, compared, both.left, settings, kind);
     if (compared.costs.length === 0) return { caption };
     return shareSpec({ width, solvers: allSolvers.filter(solver => pair.includes(solver)),
                        data: performanceSteps(pair, compared.costs), caption, logX: true,
