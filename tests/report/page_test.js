@@ -52,6 +52,8 @@
       if (!box) continue;
       expect(`${plot.title}: not wider than its place`, box.clientWidth <= plot.view.clientWidth + 1);
       expect(`${plot.title}: not blank`, hasInk(box));
+      expect(`${plot.title}: its label tells the keys`, plot.view.getAttribute('aria-label').startsWith(plot.title) &&
+        plot.view.getAttribute('aria-label').includes('plus and minus zoom'));
       expect(`${plot.title}: says what is plotted`, plot.caption.textContent.length > 60);
       expect(`${plot.title}: data`, plot.csv().split('\n').length > 2);
       expect(`${plot.title}: SVG`, (await plot.result.view.toSVG()).startsWith('<svg'));

@@ -28,9 +28,10 @@ class Plot {
   // `controls` stand above it.
   constructor(title, build, controls = null) {
     Object.assign(this, { title, build, isSeen: false, isStale: true, isDone: Promise.resolve() });
+    this.label = `${title}. Keys: plus and minus zoom, arrows move, 0 shows all.`;
     this.view = element('div', {
       class: 'view', tabindex: 0, role: 'group', onkeydown: event => this.key(event),
-      'aria-label': `${title}. Keys: plus and minus zoom, arrows move, 0 shows all.`,
+      'aria-label': this.label,
     });
     this.caption = element('figcaption');
     this.table = element('div');
@@ -74,8 +75,9 @@ class Plot {
     this.view.replaceChildren();
     this.showTable();
     if (!this.drawn.spec) return;
+    // Vega takes the description for the label of the view.
     const spec = { $schema: 'https://vega.github.io/schema/vega-lite/v6.json', ...this.drawn.spec,
-                   datasets: { rows: this.drawn.data } };
+                   description: this.label, datasets: { rows: this.drawn.data } };
     this.result = await vegaEmbed(this.view, spec, {
       actions: false, config: vegaConfig(), renderer: 'canvas', ast: false,
       tooltip: { theme: scheme === 'dark' ? 'dark' : 'light' },

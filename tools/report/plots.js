@@ -69,11 +69,11 @@ function convergencePlot(settings) {
     return {
       caption, data, zooms: true, logs: { px: logX, py: up.log },
       columns: { problem: 'problem', solver: 'solver', key: 'key', iteration: 'iteration',
-                 px: along.title, py: up.title },
+                 at: along.title, py: up.title },
       spec: lineSpec({ width, height: heightFor(width, solvers), solvers, data, x, y, tooltip: [
         { field: 'solver', title: 'solver' }, { field: 'label', title: 'run' },
         { field: 'iteration', title: 'iteration' },
-        { field: 'px', title: along.title, format: '.5~g' },
+        { field: 'at', title: along.title, format: '.5~g' },
         { field: 'py', title: up.title, format: '.5~g' }] }),
     };
   });
@@ -96,12 +96,12 @@ function convergenceRows(row, run, settings, group) {
     const px = xs[k], py = excess[k] === null ? null : up(k);
     if (!isNumber(px) || !isNumber(py) || px < 0 || py <= 0) continue;
     points.push({ problem: row.problem, solver: row.solver, key: row.key ?? '', run, label,
-                  iteration: iterations[k], px, py });
+                  iteration: iterations[k], at: px, px, py });
   }
   return points;
 }
 
-// A logarithmic axis has no 0: half the smallest value beyond it stands for it.
+// A logarithmic axis has no 0: half the smallest value beyond it stands for it; `at` stays 0.
 function putStartsAtEdge(points) {
   const least = points.reduce((min, point) => point.px > 0 ? Math.min(min, point.px) : min, Infinity);
   const atZero = points.filter(point => point.px === 0);
