@@ -77,13 +77,6 @@
     testButtonsHaveNames();
   }
 
-  function hasInk(canvas) {
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    const colours = new Set();
-    for (let k = 0; k < data.length; k += 4) colours.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
-    return colours.size > 5;
-  }
-
   function testVerdicts() {
     const belied = rows.filter(row => (row.findings ?? []).includes('claim_fails') && row.stop !== 'skipped');
     expect('what bench finds belied is refuted', belied.every(row => row.verdict === 'refuted'));
@@ -173,6 +166,9 @@
       await drawAll();
       const number = plot.drawn.data?.length ?? 0;
       expect(`convergence along ${along}`, number > 0 && plot.caption.textContent.includes(kAlong[along].title));
+      for (const each of allPlots.filter(p => visible(p) && p.drawn.zooms && selectOf('Along').closest('section').contains(p.figure))) {
+        expect(`${each.title} along ${along}: names of axes are whole`, areTitlesWhole(each));
+      }
       const isLeftOut = rows.some(row => isOverlapped(row) && row.group === 0 && traceOf(row));
       if (kAlong[along].isTime && isLeftOut) {
         expect('overlapped runs are left out, and that is said', plot.caption.textContent.includes('overlapped') &&
@@ -183,6 +179,13 @@
       change(selectOf('Up'), up);
       await drawAll();
       expect(`convergence up ${up}`, plot.drawn.data.length > 0);
+    }
+    for (const measure of [...selectOf('Measured by').options].map(option => option.value).reverse()) {
+      change(selectOf('Measured by'), measure);
+      await drawAll();
+      for (const each of allPlots.filter(p => visible(p) && p.drawn.zooms && selectOf('Measured by').closest('section').contains(p.figure))) {
+        expect(`${each.title} by ${measure}: names of axes are whole`, areTitlesWhole(each));
+      }
     }
     const starts = plot.drawn.data.filter(point => point.iteration === 0);
     expect('the gap begins at 1', starts.every(point => Math.abs(point.py - 1) < 1e-5));
@@ -250,18 +253,6 @@
       expect(`${wanted} scheme: contrast of lines`, kPalettes[scheme].every(colour =>
         contrast(back, colour) >= 2.5));
     }
-  }
-  function contrast(a, b) {  // WCAG 2.1
-    const light = colour => {
-      const probe = element('span', { style: `color: ${colour}` });
-      document.body.append(probe);
-      const parts = getComputedStyle(probe).color.match(/[\d.]+/g).slice(0, 3).map(Number);
-      probe.remove();
-      const [r, g, b] = parts.map(v => v / 255).map(v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
-      return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    };
-    const [low, high] = [light(a), light(b)].sort((x, y) => x - y);
-    return (high + 0.05) / (low + 0.05);
   }
 
   function testSorting() {

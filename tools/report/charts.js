@@ -228,7 +228,7 @@ function dotSpec({ width, height, solvers, x, y, tooltip }) {
   };
 }
 const heightFor = (width, solvers) =>
-  Math.round(Math.min(420, Math.max(260, width * 0.55)) +
+  Math.round(Math.min(420, Math.max(280, width * 0.55)) +
              25 * Math.ceil(solvers.length / legendColumns(solvers, width)));
 
 // Some marks on each line of solvers beyond the first eight, those of different lines apart.

@@ -1,11 +1,12 @@
 // The plots that are computed from the runs that pass the filters.
 
-// `name` is that of the choice, `column` the place in a trace (docs/report.md).
+// `name` is that of the choice and in captions, `column` the place in a trace (docs/report.md).
 const kAlong = {
-  iteration: { name: 'iterations', title: 'iteration', many: 'iterations', column: 1 },
-  evaluations: { name: 'evaluations', title: 'evaluations of E, gradient and Jacobian, products', column: 2 },
-  work_units: { name: 'work units', many: 'work units', column: 3, isTime: true,
-                title: 'work units: wall time of the solver over that of one evaluation of E' },
+  iteration: { name: 'iterations', title: 'iteration', column: 1 },
+  evaluations: { name: 'evaluations', title: 'evaluations of E, gradient and Jacobian, products', column: 2,
+                 note: ' Evaluations are calls of E, its gradient and Jacobian, and products.' },
+  work_units: { name: 'work units', title: 'work units (times of one evaluation of E)', column: 3, isTime: true,
+                note: ' A work unit is the wall time of one evaluation of E on the same instance.' },
   seconds: { name: 'wall time', title: 'wall time of the solver (s)', column: 3, isTime: true },
   cpu_seconds: { name: 'processor time', title: 'processor time of the solver (s)', column: 4, isTime: true },
 };
@@ -28,7 +29,8 @@ const kUp = {
 };
 const kMostLines = 150;
 
-const manyOf = measure => kAlong[measure].many ?? kAlong[measure].title;
+const nameOf = measure => kAlong[measure].name;
+const noteOf = measure => kAlong[measure].note ?? '';
 const traceOf = row => (row.key ? traces()[row.key] : undefined);
 
 function excludedText(parts) {
@@ -56,7 +58,7 @@ function convergencePlot(settings) {
     const caption = `${up.title} against ${along.title}, each run of ` +
       `${all.length > 0 ? groupName(settings.group) : 'no problem'} a line. ` +
       `E* = ${show(group.minimum, 8)}, ${star}. ` +
-      'Traces are thinned to 64 rows a run.' +
+      'Traces are thinned to 64 rows a run.' + noteOf(settings.along) +
       (atEdge ? ' What is at 0 along is drawn at the left edge.' : '') +
       (['gap', 'excess'].includes(settings.up)
         ? ' Where E − E* is below the rounding of E, that is drawn.' : '') +
@@ -121,7 +123,7 @@ function endPlot(settings) {
       .filter(row => row.px > 0 && row.py > 0 && isNumber(row.px) && isNumber(row.py));
     const solvers = allSolvers.filter(solver => data.some(row => row.solver === solver));
     const title = '|g| at the end over |g| at the start, no unit';
-    const caption = `${title}, against ${along.title}: each run a mark.` +
+    const caption = `${title}, against ${along.title}: each run a mark.` + noteOf(settings.along) +
       excludedText([[chosen.length - ran.length, 'skipped'],
                     ...left,
                     [timed.length - data.length, 'without these numbers, or with 0']]);

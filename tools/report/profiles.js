@@ -83,13 +83,13 @@ function profilePlot(settings, kind, own) {
     const data = performanceSteps(solvers, costs);
     const caption = `Dolan and Moré (2002): share of ${counted(list.length, 'instance')} that a ` +
       `solver brings to ${targetText(target)} with at most tau times the ` +
-      `${manyOf(measure)} of the best solver there. ` +
+      `${nameOf(measure)} of the best solver there.${noteOf(measure)} ` +
       failureText(list.flatMap(runs => [...runs.values()])) +
       basinText(own) + ` ${counted(unsolved, 'instance')} solved by none count for all. A profile of more than two ` +
       'solvers is no order of any two: for that there is the pair profile below.' +
       excludedText(left);
     return shareSpec({ width, solvers, data, caption, logX: true,
-                       x: `tau: ${manyOf(measure)} over the least of all solvers, no unit`,
+                       x: `tau: ${nameOf(measure)} over the least of all, no unit`,
                        y: 'share of instances' });
   });
 }
@@ -109,7 +109,7 @@ function runtimePlot(settings, kind, own) {
     const data = solvers.flatMap(solver =>
       steps(solver, times.get(solver), list.length * kTargets.length, shortest, longest * 1.2));
     const caption = `Share of ${counted(list.length * kTargets.length, 'pair')} of an instance and a ` +
-      `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${manyOf(measure)}. ` +
+      `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${nameOf(measure)}.${noteOf(measure)} ` +
       failureText(list.flatMap(runs => [...runs.values()])) + basinText(own) +
       excludedText(left);
     return shareSpec({ width, solvers, data, caption, logX: true, x: kAlong[measure].title,
@@ -195,11 +195,11 @@ function pairCaption([a, b], { costs, alone, apart, unknown }, leftRuns, setting
                 [unknown, 'instance', 'without these numbers'],
                 ...leftRuns.map(([number, text]) => [number, 'run', text])]
     .filter(([number]) => number > 0).map(([number, what, text]) => `${counted(number, what)} ${text}`);
-  return `${a} and ${b}, ${manyOf(settings.measure)} to ${targetText(settings.target)}: ` +
+  return `${a} and ${b}, ${nameOf(settings.measure)} to ${targetText(settings.target)}: ` +
     `${a} needs less, or comes there alone, on ${times(([x, y]) => x < y)} of ` +
     `${counted(costs.length, 'instance')}, ${b} on ${times(([x, y]) => y < x)}; both need the same on ` +
     `${times(row => row[0] === row[1] && !isNone(row))}, neither comes there on ${times(isNone)}. ` +
-    'The lines are the performance profile of these two alone.' +
+    'The lines are the performance profile of these two alone.' + noteOf(settings.measure) +
     (several ? ' Where there are several minima, runs are compared that end in the same one' +
       (settings.target === 'stop' ? '.' : hasBasins(kind) ? '; gaps are to that.'
         : '; gaps are to the lowest E that any run of the folder saw.') : '') +
@@ -237,7 +237,7 @@ function pairPlot(settings, kind) {
     if (compared.costs.length === 0) return { caption };
     return shareSpec({ width, solvers: allSolvers.filter(solver => pair.includes(solver)),
                        data: performanceSteps(pair, compared.costs), caption, logX: true,
-                       x: `tau: ${manyOf(measure)} over the lesser of both, no unit`,
+                       x: `tau: ${nameOf(measure)} over the lesser of both, no unit`,
                        y: 'share of instances' });
   }, element('div', { class: 'row', role: 'group', 'aria-label': `Solvers of: ${title}` }, ...choices));
   return plot;
