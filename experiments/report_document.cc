@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "experiments/build_info.h"
-#include "experiments/report_basins.h"
+#include "experiments/report_bench.h"
 #include "experiments/report_cells.h"
 #include "experiments/report_curves.h"
 #include "experiments/report_tables.h"
@@ -25,10 +25,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The instances that rows belong to, each with the E that its runs are held against.
 struct Group {
-  OrderedJson names;          // problem, terms, seeds of data and start
-  double direct = kInfinity;  // lowest E* of a direct answer
-  double best = kInfinity;    // of bench: E of the best basin
-  double lowest = kInfinity;  // lowest E that a run has seen
+  OrderedJson names;                   // problem, terms, seeds of data and start
+  double direct = kInfinity;           // lowest E* of a direct answer
+  double best = kInfinity;             // of bench: E of the best basin
+  double lowest = kInfinity;           // lowest E that a run has seen
+  double unit_seconds = std::nan("");  // of bench: of one evaluation of E
 
   bool is_direct() const { return std::isfinite(direct); }
   bool has_basins() const { return !is_direct() && std::isfinite(best); }
@@ -53,6 +54,7 @@ class FolderReader {
   }
   bool IsBench() const { return Has("instances.jsonl"); }
   bool ReadTraces(std::string* error);
+  void ReadBench();
   void FindGroups();
   bool ReadLogs(std::string* error);
   bool ReadManifest(std::string* error);
@@ -64,7 +66,7 @@ class FolderReader {
   std::vector<std::string> notes_;
   std::vector<OrderedJson> cells_;
   std::vector<ReportTrace> traces_;  // one per cell, without rows where there is none
-  BasinMinima basins_;
+  BenchFacts bench_;
   std::vector<Group> groups_;
   std::vector<std::size_t> group_of_;  // of each cell
   OrderedJson logs_ = OrderedJson::object();
@@ -99,6 +101,16 @@ bool FolderReader::ReadTraces(std::string* error) {
   return true;
 }
 
+/// Rows of `bench` name no basin: which there are shows only when all runs are there.
+void FolderReader::ReadBench() {
+  if (!IsBench()) return;
+  bench_ = ReadBenchFacts(folder_);
+  for (OrderedJson& cell : cells_) {
+    const auto basin = bench_.basin.find(TextField(cell, "key"));
+    if (basin != bench_.basin.end()) cell["basin"] = basin->second;
+  }
+}
+
 void FolderReader::FindGroups() {
   std::map<std::string, std::size_t> places;
   for (std::size_t k = 0; k < cells_.size(); ++k) {
@@ -116,8 +128,10 @@ void FolderReader::FindGroups() {
     Group& group = groups_[place];
     const double direct = NumberField(cell, "minimum_energy");
     if (std::isfinite(direct)) group.direct = std::min(group.direct, direct);
-    const auto basin = basins_.best.find(TextField(cell, "key"));
-    if (basin != basins_.best.end()) group.best = std::min(group.best, basin->second);
+    const auto basin = bench_.best.find(TextField(cell, "key"));
+    if (basin != bench_.best.end()) group.best = std::min(group.best, basin->second);
+    const auto unit = bench_.unit_seconds.find(TextField(cell, "key"));
+    if (unit != bench_.unit_seconds.end()) group.unit_seconds = unit->second;
     const double energy = NumberField(cell, "energy");
     if (std::isfinite(energy)) group.lowest = std::min(group.lowest, energy);
     for (const ReportTrace::Row& row : traces_[k].rows) {
@@ -206,8 +220,8 @@ bool FolderReader::TracesJson(std::string* json, std::string* error) {
     }
     const std::vector<Row>& rows = whole.rows.empty() ? trace.rows : whole.rows;
     text += ',' + TargetHits(rows, minimum);
-    const auto own = basins_.own.find(key);
-    if (own != basins_.own.end()) text += ',' + TargetHits(rows, own->second);
+    const auto own = bench_.own.find(key);
+    if (own != bench_.own.end()) text += ',' + TargetHits(rows, own->second);
     text += ']';
   }
   *json = text + "}";
@@ -219,7 +233,7 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
   if (has_cells && !ReadCells(InFolder("cells.jsonl"), &cells_, &notes_, error)) return false;
   if (!ReadTraces(error) || !ReadLogs(error) || !ReadManifest(error) || !ReadBenchNotes(error))
     return false;
-  if (IsBench()) basins_ = ReadBasinMinima(folder_);
+  ReadBench();
   FindGroups();
   OrderedJson tables, pictures, pages;
   // Of compare the rows of cells.jsonl once more; that of bench has basins and costs beside them.
@@ -242,6 +256,7 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
     shown["minimum"] = std::isfinite(group.minimum()) ? OrderedJson(group.minimum()) : nullptr;
     shown["direct"] = group.is_direct();
     shown["basins"] = group.has_basins();
+    if (std::isfinite(group.unit_seconds)) shown["unit_seconds"] = group.unit_seconds;
     groups.push_back(std::move(shown));
   }
   std::error_code ignored;

@@ -164,6 +164,29 @@ TEST_F(ReportDocumentTest, HasTheNotesOfABenchmarkAlone) {
             json::parse("[\"All is finished.\", \"- a | own: cg: diverged\"]"));
 }
 
+TEST_F(ReportDocumentTest, HasTheWorkUnitOfEachInstanceOfABenchmark) {
+  Write("cells.jsonl",
+        "{\"key\": \"a\", \"problem\": \"p\", \"terms\": \"own\", \"solver\": \"cg\", "
+        "\"instance\": \"1\"}\n"
+        "{\"key\": \"b\", \"problem\": \"q\", \"terms\": \"own\", \"solver\": \"cg\", "
+        "\"instance\": \"2\"}\n"
+        "{\"key\": \"c\", \"problem\": \"r\", \"terms\": \"own\", \"solver\": \"cg\", "
+        "\"instance\": \"3\"}\n");
+  const std::string instances =
+      "{\"key\": \"1\", \"minimum_energy\": 1, \"evaluation_seconds\": 0.25}\n"
+      "{\"key\": \"2\", \"minimum_energy\": null, \"evaluation_seconds\": 0.5}\n";
+  Write("instances.jsonl", instances);
+  Write(
+      "manifest.json",
+      "{\"format\": \"batten.manifest/1\", \"cells\": [\"a\", \"b\", \"c\"], \"gap_targets\": []}");
+  ASSERT_TRUE(Read()) << error_;
+  const json groups = Summary()["groups"];
+  ASSERT_EQ(groups.size(), 3u);
+  EXPECT_EQ(groups[0]["unit_seconds"], 0.25);
+  EXPECT_EQ(groups[1]["unit_seconds"], 0.5);
+  EXPECT_FALSE(groups[2].contains("unit_seconds"));  // not measured
+}
+
 TEST_F(ReportDocumentTest, ASkippedRunBelongsToTheProblemAsTheOthersRanIt) {
   Write("cells.jsonl",
         "{\"problem\": \"p\", \"stop\": \"skipped\"}\n{\"key\": \"a\", \"problem\": \"p\"}\n");

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Tries report pages in headless Chromium: opens each at 1200 and at 400 pixels, light and dark, and
-# lets page_test.js do what a reader does.
+# lets page_test.js do what a reader does; inputs.py then presses real keys and moves a real mouse.
 #   tests/report/run.sh REPORT.html...
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -15,16 +15,16 @@ browser() {
     --user-data-dir="$scratch/profile" --no-first-run "$@" 2>"$scratch/browser.log"
 }
 
-# with_tests PAGE: the page with watch.js in front of all and page_test.js behind all.
+# with_tests PAGE: the page with watch.js in front of all and the tests behind all.
 with_tests() {
-  awk -v watch="$here/watch.js" -v test="$here/page_test.js" '
+  awk -v watch="$here/watch.js" -v looks="$here/looks.js" -v pairs="$here/profile_test.js" -v test="$here/page_test.js" '
     function put(file,  line) {
       print "<script>"
       while ((getline line < file) > 0) print line
       close(file)
       print "</script>"
     }
-    $0 == "</body>" { put(test) }
+    $0 == "</body>" { put(looks); put(pairs); put(test) }
     { print }
     $0 == "<head>" { put(watch) }' "$1"
 }
@@ -53,6 +53,13 @@ for page in "$@"; do
         failed=1
         echo "$page, $width px, $scheme: FAILED"
         grep -E '^(FAILED|page test: [0-9])' "$scratch/dom.html" || cat "$scratch/browser.log"
+      fi
+      if "$here/inputs.py" "$page" "$width" "$scheme" >"$scratch/inputs.log" 2>&1; then
+        echo "$page: $(cat "$scratch/inputs.log")"
+      else
+        failed=1
+        echo "$page, $width px, $scheme: FAILED"
+        cat "$scratch/inputs.log"
       fi
     done
   done

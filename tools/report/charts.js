@@ -25,11 +25,13 @@ const whenSeen = new IntersectionObserver(entries => {
 class Plot {
   // build(width): {spec, data, columns, caption} or {caption} where there is nothing to draw.
   // `data` is what the spec's dataset "rows" holds, `columns` what of it is downloaded, by title.
-  constructor(title, build) {
+  // `controls` stand above it.
+  constructor(title, build, controls = null) {
     Object.assign(this, { title, build, isSeen: false, isStale: true, isDone: Promise.resolve() });
+    this.label = `${title}. Keys: plus and minus zoom, arrows move, 0 shows all.`;
     this.view = element('div', {
       class: 'view', tabindex: 0, role: 'group', onkeydown: event => this.key(event),
-      'aria-label': `${title}. Keys: plus and minus zoom, arrows move, 0 shows all.`,
+      'aria-label': this.label,
     });
     this.caption = element('figcaption');
     this.table = element('div');
@@ -40,7 +42,7 @@ class Plot {
       this.button('Show all', () => this.reset()), this.tableButton,
       this.button('CSV', () => this.saveCsv()), this.button('SVG', () => this.saveSvg()),
       this.button('PNG', () => this.savePng()));
-    this.figure = element('figure', {}, element('h3', {}, title), this.view, this.buttons,
+    this.figure = element('figure', {}, element('h3', {}, title), controls, this.view, this.buttons,
                           this.table, this.caption);
     this.figure.plot = this;
     allPlots.push(this);
@@ -73,8 +75,9 @@ class Plot {
     this.view.replaceChildren();
     this.showTable();
     if (!this.drawn.spec) return;
+    // Vega takes the description for the label of the view.
     const spec = { $schema: 'https://vega.github.io/schema/vega-lite/v6.json', ...this.drawn.spec,
-                   datasets: { rows: this.drawn.data } };
+                   description: this.label, datasets: { rows: this.drawn.data } };
     this.result = await vegaEmbed(this.view, spec, {
       actions: false, config: vegaConfig(), renderer: 'canvas', ast: false,
       tooltip: { theme: scheme === 'dark' ? 'dark' : 'light' },
@@ -187,10 +190,15 @@ const kHover = { name: 'hover', select: { type: 'point', on: 'pointerover', near
 const kPick = { name: 'pick', select: { type: 'point', fields: ['solver'] }, bind: 'legend' };
 
 // Lines of rows {solver, run, px, py, ...}, one per run; `mark` is the shape at one.
-function lineSpec({ width, height, solvers, x, y, tooltip, interpolate = 'linear' }) {
+function lineSpec({ width, height, solvers, data, x, y, tooltip, interpolate = 'linear' }) {
   const shared = { x, y, color: colours(solvers, width) };
   const dash = { ...looksOf(solvers, 'strokeDash', kDashes) };
   const bright = { condition: { param: 'pick', value: 1 }, value: 0.12 };
+  const marks = {
+    transform: [{ filter: 'datum.mark' }],
+    mark: { type: 'point', filled: true, size: 40, clip: true },
+    encoding: { ...shared, opacity: bright, shape: { field: 'mark', type: 'nominal', scale: null } },
+  };
   return {
     width, height, autosize: { type: 'fit', contains: 'padding' }, data: { name: 'rows' },
     layer: [
@@ -198,10 +206,8 @@ function lineSpec({ width, height, solvers, x, y, tooltip, interpolate = 'linear
                                         invalid: 'break-paths-filter-domains' },
         encoding: { ...shared, strokeDash: { ...dash, legend: shared.color.legend }, opacity: bright,
                     detail: { field: 'run' } } },
-      { transform: [{ filter: 'datum.mark' }],
-        mark: { type: 'point', filled: true, size: 40, clip: true },
-        encoding: { ...shared, opacity: bright,
-                    shape: { field: 'mark', type: 'nominal', scale: null } } },
+      // Vega warns of a layer without a row.
+      ...(data.some(row => row.mark) ? [marks] : []),
       { params: [kHover], mark: { type: 'point', filled: true, size: 60, clip: true },
         encoding: { ...shared, tooltip,
                     opacity: { condition: { param: 'hover', empty: false, value: 1 }, value: 0 } } },
@@ -222,7 +228,7 @@ function dotSpec({ width, height, solvers, x, y, tooltip }) {
   };
 }
 const heightFor = (width, solvers) =>
-  Math.round(Math.min(420, Math.max(260, width * 0.55)) +
+  Math.round(Math.min(420, Math.max(280, width * 0.55)) +
              25 * Math.ceil(solvers.length / legendColumns(solvers, width)));
 
 // Some marks on each line of solvers beyond the first eight, those of different lines apart.

@@ -34,6 +34,9 @@ function derive(row, index) {
   row.verdict = verdictOf(row);
   const counts = ['energy_calls', 'gradient_calls', 'jacobian_calls', 'products'].map(f => row[f]);
   row.evaluations = counts.some(isNumber) ? counts.reduce((sum, n) => sum + (n ?? 0), 0) : null;
+  // As in the tables of bench: the time of one evaluation of E, measured on the instance, is the unit.
+  const unit = doc.groups[row.group].unit_seconds;
+  if (isNumber(unit)) row.work_units = isNumber(row.seconds) ? row.seconds / unit : null;
   // The same instance in another repetition or with another seed is another run to solve.
   row.instanceId = JSON.stringify([row.group, row.start_seed, row.seed, row.repetition]);
   return row;
@@ -60,6 +63,7 @@ const allProblems = inOrder(rows.map(row => row.problem));
 const allSolvers = inOrder(rows.map(row => row.solver));
 const allTerms = inOrder(rows.flatMap(row => row.termList));
 const isOverlapped = row => row.overlapped === true;
+const hasWorkUnits = rows.some(row => isNumber(row.work_units));
 
 const filters = {
   problem: new Set(allProblems), solver: new Set(allSolvers), term: new Set(allTerms),

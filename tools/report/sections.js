@@ -31,6 +31,7 @@ function summaryContent() {
              failed: count(runs, 'failed'), refuted: count(runs, 'refuted'),
              skipped: count(runs, 'skipped'), iterations: median(good.map(row => row.iterations)),
              evaluations: median(good.map(row => row.evaluations)),
+             work_units: median(timed.map(row => row.work_units)),
              seconds: median(timed.map(row => row.seconds)) };
   }).filter(row => row.runs > 0);
   const columns = [
@@ -40,12 +41,14 @@ function summaryContent() {
     { field: 'failed', title: 'failed' }, { field: 'refuted', title: 'refuted' },
     { field: 'skipped', title: 'skipped' }, { field: 'iterations', title: 'iterations, median' },
     { field: 'evaluations', title: 'evaluations, median' },
+    ...(hasWorkUnits ? [{ field: 'work_units', title: 'work units, median' }] : []),
     { field: 'seconds', title: 'time (s), median' }];
   const numOverlapped = chosen.filter(isOverlapped).length;
   const caption = 'Reached: the run came to what it was asked for and the audit does not refute it. ' +
     'Failed: it did not, or hit a limit. Refuted: it claims what the audit or the direct answer ' +
     'contradicts. Skipped: the solver does not apply. Medians are those of the runs that reached; ' +
     'evaluations are calls of E, its gradient and Jacobian, and products.' +
+    (hasWorkUnits ? ' Work units are times over that of one evaluation of E on the same instance.' : '') +
     (numOverlapped > 0 ? ` Times leave out ${counted(numOverlapped, 'run')} that overlapped.` : '');
   return [sortableTable(columns, list, { name: 'summary' }),
           element('p', { class: 'quiet' }, caption)];
@@ -61,9 +64,7 @@ function addConvergence() {
   const problem = select('Problem', doc.groups.map((_, k) => [String(k), groupName(k)]), '0',
                          value => { settings.group = Number(value); plot.refresh(); });
   const controls = element('div', { class: 'row' }, problem,
-    select('Along', [['iteration', 'iterations'], ['evaluations', 'evaluations'],
-                     ['seconds', 'wall time'], ['cpu_seconds', 'processor time']],
-           settings.along, set('along')),
+    select('Along', measures, settings.along, set('along')),
     select('Up', [['gap', 'gap'], ['excess', 'E − E*'], ['energy', 'E'], ['gradient', '|g|']],
            settings.up, set('up')),
     check('Logarithmic along', true, set('logX')));
@@ -88,28 +89,25 @@ function addProfiles() {
   const hasTraces = rows.some(traceOf);
   const settings = { measure: 'iteration', target: hasTraces ? 1e-6 : 'stop' };
   // Per kind of parameters; where there are several minima those to the own basin beside.
-  const plots = allKinds.flatMap(kind => (hasBasins(kind) ? [false, true] : [false])
-    .map(own => ({ kind, pair: [profilePlot(settings, kind, own),
-                                ...(hasTraces ? [runtimePlot(settings, kind, own)] : [])] })));
-  const refresh = () => plots.forEach(({ pair }) => pair.forEach(plot => plot.refresh()));
+  const kinds = allKinds.map(kind => {
+    const goals = hasBasins(kind) ? [false, true] : [false];
+    return [...goals.map(own => profilePlot(settings, kind, own)),
+            ...(hasTraces ? goals.map(own => runtimePlot(settings, kind, own)) : []),
+            pairPlot(settings, kind)];
+  });
+  const refresh = () => kinds.flat().forEach(plot => plot.refresh());
   const targets = [['stop', 'what the run was asked for'],
                    ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t.toExponential()}`]) : [])];
   const controls = element('div', { class: 'row' },
-    select('Measured by', [['iteration', 'iterations'], ['evaluations', 'evaluations'],
-                           ['seconds', 'wall time'],
-                           ...(hasTraces ? [['cpu_seconds', 'processor time']] : [])],
+    select('Measured by', measures.filter(([name]) => hasTraces || name !== 'cpu_seconds'),
            settings.measure, value => { settings.measure = value; refresh(); }),
     select('Solved means', targets, String(settings.target), value => {
       settings.target = value === 'stop' ? value : Number(value);
       refresh();
     }));
   const few = element('p', {}, 'Profiles need two problems or more.');
-  const box = element('div', {}, controls, element('div', { class: 'plots' },
-    ...allKinds.flatMap(kind => {
-      const pairs = plots.filter(plot => plot.kind === kind).map(({ pair }) => pair);
-      // Best and own basin side by side.
-      return pairs[0].flatMap((_, k) => pairs.map(pair => pair[k].figure));
-    })));
+  const box = element('div', {}, controls, ...kinds.map(plots =>
+    element('div', { class: 'plots' }, ...plots.map(plot => plot.figure))));
   addSection('Profiles', element('div', {}, few, box), () => {
     const isMany = new Set(chosen.map(row => row.group)).size >= 2;
     few.hidden = isMany;
@@ -123,7 +121,8 @@ const kRunColumns = [
   { field: 'terms', title: 'terms', text: true }, { field: 'parameter_kind', title: 'parameters', text: true },
   { field: 'verdict', title: 'verdict', text: true, cell: verdictCell },
   { field: 'stop', title: 'stop', text: true }, { field: 'iterations', title: 'iterations' },
-  { field: 'evaluations', title: 'evaluations' }, { field: 'seconds', title: 'time (s)' },
+  { field: 'evaluations', title: 'evaluations' }, { field: 'work_units', title: 'work units' },
+  { field: 'seconds', title: 'time (s)' },
   { field: 'energy', title: 'E (unit of the data, squared)', digits: 6 },
   { field: 'energy_at_foot_points', title: 'E at foot points (unit of the data, squared)', digits: 6 },
   { field: 'gap', title: 'gap, no unit' }, { field: 'gradient_norm', title: '|g| (unit of the data)' },

@@ -1,0 +1,166 @@
+// Pairs of solvers and work units on the page, against counts made here from the rows as they stand, and
+// against the tables of bench.
+
+// The numbers that the caption of a pair profile says.
+function pairCounts(plot) {
+  const text = plot.caption.textContent;
+  const number = pattern => Number((text.match(pattern) ?? [])[1] ?? NaN);
+  const none = !plot.drawn.spec;
+  return none ? { first: 0, second: 0, equal: 0, neither: 0, instances: 0 } : {
+    first: number(/comes there alone, on (\d+) of/), second: number(/instances?, .* on (\d+); both/),
+    equal: number(/need the same on (\d+)/), neither: number(/neither comes there on (\d+)\./),
+    instances: number(/ of (\d+) instances?,/) };
+}
+
+async function testPairProfiles({ expect, change, selectOf }) {
+  const plots = allPlots.filter(plot => plot.title.startsWith('Pair profile') && !plot.figure.closest('[hidden]'));
+  const { common, fields, rows: lists } = doc.cells;
+  const raw = lists.map(list => ({ ...common, ...Object.fromEntries(list.map((value, k) => [fields[k], value])) }));
+  const kindOfProblem = new Map(raw.filter(row => row.parameter_kind).map(row => [row.problem, row.parameter_kind]));
+  expect('a pair profile for each kind of parameters',
+    plots.length === new Set(raw.map(row => kindOfProblem.get(row.problem))).size);
+  const choose = async (plot, pair) => {
+    plot.figure.querySelectorAll('select').forEach((node, k) => change(node, pair[k]));
+    await plot.draw();
+  };
+  const chosenPair = plot => [...plot.figure.querySelectorAll('select')].map(node => node.value);
+  const namesOf = plot => [...plot.figure.querySelector('select').options].map(option => option.value);
+
+  for (const plot of plots) {
+    const [a, b] = chosenPair(plot);
+    const names = namesOf(plot), kind = plot.title.match(/(\w+) parameters/)?.[1];
+    const some = names.some((x, k) => names.slice(k + 1).some(y =>
+      expectedCounts([x, y], kind, 'iteration', '1e-6').instances > 0));
+    expect(`${plot.title}: begins with two`, a !== '' && b !== '' && a !== b && some === Boolean(plot.drawn.spec) &&
+      (plot.drawn.data ?? []).every(row => row.solver === a || row.solver === b));
+    expect(`${plot.title}: solvers can be chosen by the keyboard`,
+      [...plot.figure.querySelectorAll('select')].every(node => { node.focus(); return document.activeElement === node; }));
+    change(plot.figure.querySelector('select'), b);
+    await plot.draw();
+    expect(`${plot.title}: never one solver twice`, chosenPair(plot).join() === [b, a].join());
+  }
+  const usual = [selectOf('Measured by').value, selectOf('Solved means').value];
+  for (const [measure, target] of [['evaluations', 'stop'], ['iteration', '0.001'], ['evaluations', '1e-8']]) {
+    change(selectOf('Measured by'), measure);
+    change(selectOf('Solved means'), target);
+    for (const plot of plots) await testCounts(plot, measure, target);
+  }
+  if (doc.tables.some(table => table.name === 'pairs.csv')) await testAgainstBench();
+  change(selectOf('Measured by'), usual[0]);
+  change(selectOf('Solved means'), usual[1]);
+
+  async function testCounts(plot, measure, target) {
+    const names = namesOf(plot), kind = plot.title.match(/(\w+) parameters/)?.[1];
+    for (let k = 0; k + 1 < names.length && k < 8; ++k) {
+      const pair = [names[k], names[k + 1]];
+      await choose(plot, pair);
+      const mine = expectedCounts(pair, kind, measure, target);
+      expect(`${plot.title}, ${pair.join(' and ')}, ${measure} to ${target}: ${JSON.stringify(mine)}`,
+        JSON.stringify(pairCounts(plot)) === JSON.stringify(mine));
+    }
+  }
+
+  function expectedCounts(pair, kind, measure, target) {
+    const counts = { first: 0, second: 0, equal: 0, neither: 0, instances: 0 };
+    const runsOf = new Map();
+    raw.forEach((row, k) => {
+      if (row.stop === 'skipped' || (kind && kindOfProblem.get(row.problem) !== kind)) return;
+      const id = ['problem', 'terms', 'data_seed', 'start_seed', 'seed', 'repetition'].map(name => row[name]).join('|');
+      if (!runsOf.has(id)) runsOf.set(id, {});
+      runsOf.get(id)[row.solver] = { ...row, verdict: rows[k].verdict };
+    });
+    for (const runs of runsOf.values()) {
+      const [a, b] = pair.map(solver => runs[solver]);
+      const hasMinima = Object.values(runs).some(run => run.basin >= 1);
+      if (!a || !b || (hasMinima && (!a.basin || a.basin !== b.basin))) continue;
+      const [x, y] = [a, b].map(run => expectedCost(run, measure, target));
+      counts.instances += 1;
+      counts[x === y ? (x === Infinity ? 'neither' : 'equal') : x < y ? 'first' : 'second'] += 1;
+    }
+    return counts;
+  }
+  function expectedCost(run, measure, target) {
+    if (target === 'stop') {
+      const calls = run.energy_calls + run.gradient_calls + run.jacobian_calls + run.products;
+      return run.verdict === 'reached' ? Math.max(1, measure === 'iteration' ? run.iterations : calls) : Infinity;
+    }
+    const trace = traces()[run.key], place = -Math.round(Math.log10(Number(target))) - 1;
+    const value = trace && run.verdict !== 'refuted'
+      ? (trace[8] ?? trace[7])[measure === 'iteration' ? 0 : 1][place] : null;
+    return value === null ? Infinity : Math.max(1, value);
+  }
+
+  // A row of its table is of all kinds of parameters, and of medians over repetitions, which are alike.
+  async function testAgainstBench() {
+    change(selectOf('Measured by'), 'evaluations');
+    change(selectOf('Solved means'), '0.001');
+    const { columns, rows: lines } = doc.tables.find(table => table.name === 'pairs.csv');
+    const table = lines.map(line => Object.fromEntries(line.map((value, k) => [columns[k], value])));
+    const refuted = new Set(rows.filter(row => row.verdict === 'refuted').map(row => row.solver));
+    const usable = table.filter(row => row.target === 'gap 0.001' && row.cost === 'evaluations' &&
+      [row.first, row.second].every(name => allSolvers.includes(name) && !refuted.has(name)));
+    const close = usable.filter(row => Number(row.first_less) > 0 && Number(row.second_less) > 0);
+    const tried = [...close, ...usable.filter((_, k) => k % 25 === 0)];
+    expect('some pairs of bench are to be compared', close.length > 0 && tried.length > 5);
+    const repetitions = new Set(raw.map(row => row.repetition)).size;
+    for (const row of tried) {
+      const sum = { first: 0, second: 0, equal: 0, neither: 0, instances: 0 };
+      const withinTwo = [0, 0];
+      for (const plot of plots.filter(p => [row.first, row.second].every(name => namesOf(p).includes(name)))) {
+        await choose(plot, [row.first, row.second]);
+        const counts = pairCounts(plot);
+        for (const name of Object.keys(sum)) sum[name] += counts[name];
+        [row.first, row.second].forEach((solver, k) => {
+          const shares = (plot.drawn.data ?? []).filter(point => point.solver === solver && point.px <= 2);
+          withinTwo[k] += Math.max(0, ...shares.map(point => point.py)) * counts.instances;
+        });
+      }
+      const names = { first: 'first_less', second: 'second_less', equal: 'equal', neither: 'neither', instances: 'instances' };
+      expect(`${row.first} and ${row.second} as in pairs.csv`, Object.entries(names).every(([name, column]) =>
+        sum[name] === repetitions * Number(row[column])));
+      expect(`${row.first} and ${row.second}: profiles at 2 as in pairs.csv`, ['first_at_2', 'second_at_2']
+        .every((column, k) => Math.abs(withinTwo[k] / sum.instances - Number(row[column])) < 1e-4));
+    }
+  }
+}
+
+// Work units and basins, which the rows of bench do not have, are those of its table.
+async function testWorkUnits({ expect, change, selectOf }) {
+  const offered = label => [...selectOf(label).options].some(option => option.value === 'work_units');
+  const table = doc.tables.find(({ name, columns }) => name === 'table.csv' && columns.includes('work_units'));
+  expect('work units are offered where there are some', ['Along', 'Measured by'].every(label =>
+    offered(label) === Boolean(table)));
+  if (!table) return;
+  const fields = ['problem', 'terms', 'data_seed', 'start_seed', 'solver', 'seed'];
+  const idOf = row => fields.map(field => row[field]).join('|');
+  const lines = new Map(table.rows.map(list => Object.fromEntries(list.map((value, k) => [table.columns[k], value])))
+    .map(line => [idOf(line), line]));
+  const runs = new Map(rows.map(row => [idOf(row), rows.filter(other => idOf(other) === idOf(row))]));
+  const known = [...runs].filter(([id, some]) => lines.get(id)?.work_units && !some.some(isOverlapped));
+  const isNear = (a, b) => Math.abs(a - b) <= 1e-12 * Math.abs(b);
+  expect('work units of runs are those of table.csv', known.length > 10 && known.every(([id, some]) =>
+    isNear(median(some.map(row => row.work_units)), Number(lines.get(id).work_units))));
+  expect('basins are those of table.csv', [...runs].every(([id, some]) =>
+    !lines.has(id) || some.every(row => String(row.basin ?? '') === lines.get(id).basin)));
+  expect('some end in a second basin', rows.some(row => row.basin === 2));
+
+  const unitOfLine = row => {
+    const line = lines.get(idOf(row));
+    return Number(line.seconds) / Number(line.work_units);
+  };
+  const plot = allPlots.find(p => p.title === 'Convergence');
+  const drawn = async along => {
+    change(selectOf('Along'), along);
+    await plot.draw();
+    return plot.drawn.data.filter(point => point.iteration > 0);
+  };
+  const units = await drawn('work_units'), seconds = await drawn('seconds');
+  expect('convergence along work units', units.length > 10 && units.length === seconds.length && units.every((point, k) => {
+    const row = rows.find(({ key }) => key === point.key);
+    return isNear(point.px * unitOfLine(row), seconds[k].px);
+  }));
+  change(selectOf('Along'), 'iteration');
+  const reached = rows.filter(row => costOf(row, 0.1, 'seconds', false) < Infinity);
+  expect('work units to a target', reached.length > 10 && reached.every(row =>
+    isNear(costOf(row, 0.1, 'work_units', false) * unitOfLine(row), costOf(row, 0.1, 'seconds', false))));
+}
