@@ -7,6 +7,16 @@
 #include <utility>
 
 namespace batten {
+namespace {
+
+/// In the middle, far from what a periodic sequence repeats.
+std::vector<double> WithADoubleKnot(std::vector<double> knots) {
+  const std::size_t middle = knots.size() / 2;
+  knots[middle] = knots[middle + 1];
+  return knots;
+}
+
+}  // namespace
 
 std::string FreeName(const std::string& registered) {
   if (registered == "anderson") return "anderson:pdm";
@@ -87,8 +97,9 @@ std::vector<ContractProblem> LeastSquaresProblems() {
                        : spec.ends == EndKnots::kFloating ? "floating"
                                                           : "clamped";
     problems.push_back({std::string(ends) + " degree " + std::to_string(spec.degree) + ", " +
-                            ToString(spec.knots) +
-                            " knots, n = " + std::to_string(spec.control_points) +
+                            ToString(spec.knots) + " knots" +
+                            (spec.given_knots.empty() ? "" : " with a double one") +
+                            ", n = " + std::to_string(spec.control_points) +
                             ", d = " + std::to_string(d) + (weighted ? ", weighted" : ""),
                         [=] {
                           DataSet data = MakeNoisyLoop(m, d, 100 + seed);
@@ -111,6 +122,13 @@ std::vector<ContractProblem> LeastSquaresProblems() {
   for (const auto& [degree, n] :
        {std::pair(3, 6), {3, 3}, {3, 1}, {2, 4}, {4, 2}, {5, 2}, {7, 8}, {9, 12}}) {
     add(MakeSpec(degree, true, n), 30);
+  }
+  for (const EndKnots ends :
+       {EndKnots::kPeriodic, EndKnots::kEndInterpolating, EndKnots::kFloating}) {
+    FitSpec spec = MakeSpec(3, ends == EndKnots::kPeriodic, 19);
+    if (!spec.closed) spec.ends = ends;
+    spec.given_knots = WithADoubleKnot(UniformKnots(3, 19, ends, 0.0, 1.0));
+    add(spec, 60);
   }
   return problems;
 }
