@@ -88,6 +88,8 @@ void AddSpec(const FitSpec& spec, std::ostream* text) {
   }
   if (spec.guard.has_value()) *text << spec.guard->ToString() << ' ';
   for (const NameSpec& constraint : spec.constraints) *text << constraint.ToString() << ' ';
+  if (!spec.span_weights.empty()) *text << "span_weights ";
+  for (const double weight : spec.span_weights) *text << NumberText(weight) << ' ';
 }
 
 void AddProblem(const BenchProblem& problem, const BenchTerms& terms, std::ostream* text) {

@@ -140,6 +140,7 @@ bool BenchRunner::StartNext(std::vector<Running>* running, std::string* error) {
 bool BenchRunner::Attend(std::vector<Running>* running, const Progress& progress,
                          std::string* error) {
   Tell(progress, *running);
+  if (!cell_file_.SyncWhenDue(error)) return false;
   constexpr double kLongest = 0.1;  // seconds; interrupts and progress are looked at in between
   double wait = kLongest;
   std::vector<pollfd> files;

@@ -80,9 +80,13 @@ bool AppendOnlyFile::Append(const std::string& line, std::string* error) {
   }
   size_ += static_cast<long>(text.size());
   is_dirty_ = true;
+  return SyncWhenDue(error);
+}
+
+bool AppendOnlyFile::SyncWhenDue(std::string* error) {
   // A sync can take longer than a small cell.
   constexpr auto kInterval = std::chrono::milliseconds(500);
-  return Clock::now() - synced_ < kInterval || Sync(error);
+  return !is_dirty_ || Clock::now() - synced_ < kInterval || Sync(error);
 }
 
 bool AppendOnlyFile::Sync(std::string* error) {

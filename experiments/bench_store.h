@@ -21,9 +21,11 @@ class AppendOnlyFile {
   bool Open(const std::string& path, const std::function<void(const std::string&)>& read,
             std::string* error);
   /// Adds the line and its end. On failure, as on a full disk, the file is as it was before. On the
-  /// disk itself it is after half a second, or Sync().
+  /// disk itself it is with the next SyncWhenDue() after half a second, or Sync().
   bool Append(const std::string& line, std::string* error);
   bool Sync(std::string* error);
+  /// Sync(), where a line has waited for half a second.
+  bool SyncWhenDue(std::string* error);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -67,6 +67,11 @@ bool ReadTerms(const StrictObject& file, BenchSuite* suite) {
       // Kinds of parameters have different distances, with like options.
       NameSpec checked = term;
       if (checked.name == "distance") checked.name = "interpolation";
+      if (TermRegistry::Global().Find(checked.name) == nullptr) {
+        std::vector<std::string> names = TermRegistry::Global().Names();
+        names.insert(names.end(), {"distance", "own"});
+        return file.Complain(place, UnknownNameMessage("term", checked.name, names));
+      }
       const Term* found = nullptr;
       OptionValues options;
       if (!TermRegistry::Global().Resolve(checked, &found, &options, &why)) {

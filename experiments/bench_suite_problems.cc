@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cost_functions/options.h"
 #include "experiments/bench_suite.h"
 #include "problems/data_folders.h"
 #include "problems/strict_json.h"
@@ -29,7 +30,8 @@ bool ReadKinds(const StrictObject& object, std::vector<std::string>* kinds) {
   if (!object.Texts("parameter_kind", kRequired, kinds)) return false;
   for (std::size_t i = 0; i < kinds->size(); ++i) {
     if (std::find(words.begin(), words.end(), (*kinds)[i]) == words.end()) {
-      return object.Refuse("parameter_kind/" + std::to_string(i), "fixed, free, projected");
+      return object.Complain("parameter_kind/" + std::to_string(i),
+                             UnknownNameMessage("kind of parameters", (*kinds)[i], words));
     }
   }
   return true;
@@ -51,12 +53,15 @@ bool ReadGrid(const StrictObject& object, Grid* grid) {
 
 /// What may be said of any problem beside its grid.
 bool ReadDetails(const StrictObject& object, FitSpec* spec) {
+  return object.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) &&
+         object.Flag("hold_ends", kOptional, &spec->hold_ends) &&
+         object.Flag("keep_order", kOptional, &spec->keep_order);
+}
+
+bool ReadParameters(const StrictObject& object, FitSpec* spec) {
   std::string rule = spec->parameters.has_value() ? ToString(*spec->parameters) : "given";
   if (!object.Word("parameters", kOptional, {"uniform", "chord_length", "centripetal", "given"},
-                   &rule) ||
-      !object.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) ||
-      !object.Flag("hold_ends", kOptional, &spec->hold_ends) ||
-      !object.Flag("keep_order", kOptional, &spec->keep_order)) {
+                   &rule)) {
     return false;
   }
   Parameterization read = Parameterization::kUniform;
@@ -181,11 +186,8 @@ bool ReadBenchProblems(const StrictObject& entry, const std::string& suite_path,
     return false;
   }
   base.own_terms = base.entry.spec.terms;
-  if (!ReadGrid(entry, &grid) || (!base.truth && !ReadDetails(entry, &base.entry.spec))) {
-    return false;
-  }
-  if (base.truth && !entry.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"},
-                                &base.entry.spec.start)) {
+  if (!ReadGrid(entry, &grid) || !ReadDetails(entry, &base.entry.spec) ||
+      (!base.truth && !ReadParameters(entry, &base.entry.spec))) {
     return false;
   }
   const bool has_knots = !base.entry.spec.given_knots.empty();

@@ -120,6 +120,11 @@ bool ReadSolverEntry(const StrictObject& entry, std::vector<NameSpec>* solvers) 
     return true;
   }
   if (!ParseNameSpec(text, &spec, &why)) return entry.Complain("", why);
+  if (registry.Find(spec.name) == nullptr) {
+    std::vector<std::string> names = registry.Names();
+    names.emplace_back("all");
+    return entry.Complain("", UnknownNameMessage("solver", spec.name, names));
+  }
   solvers->push_back(spec);
   return true;
 }

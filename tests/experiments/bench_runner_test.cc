@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <set>
 
 #include "experiments/bench_manifest.h"
 #include "experiments/bench_results.h"
@@ -157,6 +158,17 @@ TEST_F(BenchRunnerTest, RunsAgainWhatHasChanged) {
   std::filesystem::remove_all(out_ + "/traces");
   Run(R"("cg", "lbfgs")");
   EXPECT_EQ(taken_over_, 0u);
+}
+
+TEST_F(BenchRunnerTest, RunsAgainWhereAWeightOfASpanHasChanged) {
+  Run(R"("cg")");
+  const BenchCell cell = BenchMatrix(suite_).front();
+  std::set<std::string> keys = {BenchCellKey(suite_, cell)};
+  std::vector<double>* const weights = &suite_.problems[0].entry.spec.span_weights;
+  for (const std::vector<double>& values : {std::vector<double>{1.0, 2.0}, {1.0, 3.0}, {1.0}}) {
+    *weights = values;
+    EXPECT_TRUE(keys.insert(BenchCellKey(suite_, cell)).second);
+  }
 }
 
 TEST_F(BenchRunnerTest, StartsEveryRepetitionFromTheStart) {

@@ -49,9 +49,9 @@ const solversOf = list =>
   allSolvers.filter(solver => list.some(runs => runs.has(solver)));
 const failureText = runs => {
   const count = verdict => runs.filter(row => row.verdict === verdict).length;
-  return `Charged as never solved: ${count('failed')} that failed or hit a limit, ` +
-    `${count('refuted')} refuted by the audit or the direct answer, ` +
-    `${count('skipped')} skipped since the solver does not apply, where they miss the target.`;
+  return `Charged as never solved: ${count('refuted')} refuted by the audit or the direct answer, ` +
+    `${count('skipped')} skipped since the solver does not apply, and of ${count('failed')} that ` +
+    'failed or hit a limit those that miss the target.';
 };
 const targetText = target =>
   target === 'stop' ? 'what the run was asked for (its stop rule)' : `a gap of ${target.toExponential()}`;
