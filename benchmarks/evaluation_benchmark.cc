@@ -89,14 +89,14 @@ void EnergyAlone(benchmark::State& state, bool compile) {
 BENCHMARK_CAPTURE(EnergyAlone, compiled, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(EnergyAlone, uncompiled, false)->Unit(benchmark::kMillisecond);
 
-/// Degree 4 has no loops of fixed size, degree 5 has: the price of run-time sizes once the rows are
-/// in memory, to be read with 7 and 8 numbers per row in mind.
+/// Degree 6 has no loops of fixed size, degree 5 has: the price of run-time sizes once the rows are
+/// in memory, to be read with 9 and 8 numbers per row in mind.
 void CompiledOfDegree(benchmark::State& state) {
   const auto degree = static_cast<int>(state.range(0));
   EvaluateObjective(state, LoopFit(kPoints, kControlPoints, /*closed=*/false, degree),
                     /*compile=*/true, /*with_gradient=*/true);
 }
-BENCHMARK(CompiledOfDegree)->Arg(4)->Arg(5)->Unit(benchmark::kMillisecond);
+BENCHMARK(CompiledOfDegree)->Arg(6)->Arg(5)->Unit(benchmark::kMillisecond);
 
 /// The fit as a user of Ceres writes it: one AutoDiffCostFunction per data point.
 class NativeCeresFit {

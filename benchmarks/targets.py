@@ -130,7 +130,7 @@ RATIOS = [
         'StreamRows/static_sizes'),
     Row('run-time over static sizes: building the normal band', 'BuildNormalBand/run_time_sizes',
         'BuildNormalBand/static_sizes'),
-    Row('run-time (degree 4) over static sizes (degree 5): E and g, compiled', 'CompiledOfDegree/4',
+    Row('run-time (degree 6) over static sizes (degree 5): E and g, compiled', 'CompiledOfDegree/6',
         'CompiledOfDegree/5'),
     *direct_fits('banded_cholesky', 'closed', '`splprep` with `nest`', SPLPREP_NEST),
     *direct_fits('banded_qr', 'closed', 'SciPy periodic `splprep`', SPLPREP),

@@ -79,8 +79,9 @@ struct AuditedCondition {
   int order = 0;      ///< Of the derivative that kPoint holds.
 };
 
-/// A fitted curve as plain numbers, in the user's units: all the audit knows. It shares no code
-/// with the folder splines/.
+/// A fitted curve as plain numbers, in the user's units: all the audit knows. The
+/// evaluator shares no code with the folder splines/; Bessel tangents, values that a term or a
+/// constraint asks for, are taken from it.
 struct AuditedFit {
   int degree = 0;
   bool periodic = false;

@@ -65,7 +65,7 @@ std::vector<Path> AllPaths() {
   return paths;
 }
 
-TEST(ChangedFunctor, ChangesEveryPathOfEverySolver) {
+TEST(ChangedFunctor, ChangesEveryPathOfFixedParameters) {
   const double factor = 2.5;
   const double shift = 0.2;
   int num_paths = 0;
