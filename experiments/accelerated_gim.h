@@ -23,6 +23,12 @@ Experiment AcceleratedGimUnits();
 Experiment AcceleratedGimStopRule();
 Experiment AcceleratedGimWhenToIterate();
 
+// What they share.
+inline constexpr const char* kLspia = "lspia";
+inline constexpr const char* kOptimalLspia = "lspia/step=optimal";
+inline constexpr const char* kLbfgs = "lbfgs";
+inline constexpr double kLoopSize = 10.0;  // of LoopProblem
+
 }  // namespace batten
 
 #endif  // BATTEN_EXPERIMENTS_ACCELERATED_GIM_H_

@@ -9,30 +9,29 @@
 namespace batten {
 namespace {
 
-constexpr int kNumPoints = 9;
+constexpr int kFigure1Size = 9;
 // Ours: the paper does not print its nine points. About 10 wide, as the outlines are.
-constexpr double kPoints[kNumPoints][2] = {{4.1, 0.3},   {5.0, 3.2},   {2.6, 4.4},
-                                           {0.4, 2.7},   {-1.9, 4.0},  {-4.8, 1.9},
-                                           {-3.6, -1.6}, {-0.7, -2.9}, {2.2, -2.1}};
+constexpr double kFigure1Points[kFigure1Size][2] = {{4.1, 0.3},   {5.0, 3.2},   {2.6, 4.4},
+                                                    {0.4, 2.7},   {-1.9, 4.0},  {-4.8, 1.9},
+                                                    {-3.6, -1.6}, {-0.7, -2.9}, {2.2, -2.1}};
 constexpr double kPublishedGim = 134.0;
 constexpr double kPublishedLbfgs = 8.0;
 constexpr const char* kGim = "gim";
-constexpr const char* kLbfgs = "lbfgs";
 
 /// Closed uniform cubic through the nine points, t_i = (i + offset) / 9, knots at j / 9.
 std::shared_ptr<const Problem> NinePoints(double offset) {
   DataSet data;
   data.name = "nine_points";
-  data.points.resize(kNumPoints, 2);
-  data.parameters = Eigen::VectorXd(kNumPoints);
-  for (int i = 0; i < kNumPoints; ++i) {
-    data.points.row(i) << kPoints[i][0], kPoints[i][1];
-    (*data.parameters)[i] = (i + offset) / kNumPoints;
+  data.points.resize(kFigure1Size, 2);
+  data.parameters = Eigen::VectorXd(kFigure1Size);
+  for (int i = 0; i < kFigure1Size; ++i) {
+    data.points.row(i) << kFigure1Points[i][0], kFigure1Points[i][1];
+    (*data.parameters)[i] = (i + offset) / kFigure1Size;
   }
   FitSpec spec;
   spec.name = "nine_points";
   spec.closed = true;
-  spec.control_points = kNumPoints;
+  spec.control_points = kFigure1Size;
   spec.parameters.reset();
   spec.domain = {0.0, 1.0};
   return CheckedFit(std::move(data), std::move(spec));

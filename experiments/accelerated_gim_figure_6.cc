@@ -10,24 +10,24 @@
 namespace batten {
 namespace {
 
-constexpr int kNumPoints = 15;
+constexpr int kFigure6Size = 15;
 constexpr int kControlPoints = 9;
 // Ours: the paper does not print its fifteen points. Unevenly spaced, so that parameters matter.
-constexpr double kPoints[kNumPoints][2] = {{0.0, 0.0},  {0.4, 1.6},  {1.9, 3.1},  {2.6, 3.2},
-                                           {4.1, 1.8},  {4.3, 0.9},  {5.3, -1.2}, {6.9, -1.3},
-                                           {7.4, -0.5}, {7.8, 1.5},  {8.1, 2.3},  {9.9, 3.2},
-                                           {11.1, 2.2}, {11.3, 1.3}, {12.6, -0.5}};
+constexpr double kFigure6Points[kFigure6Size][2] = {
+    {0.0, 0.0}, {0.4, 1.6},  {1.9, 3.1},  {2.6, 3.2},  {4.1, 1.8},
+    {4.3, 0.9}, {5.3, -1.2}, {6.9, -1.3}, {7.4, -0.5}, {7.8, 1.5},
+    {8.1, 2.3}, {9.9, 3.2},  {11.1, 2.2}, {11.3, 1.3}, {12.6, -0.5}};
 constexpr const char* kFixed = "fixed";
 constexpr const char* kFree = "free";
-constexpr const char* kLbfgs = "lbfgs";
 constexpr const char* kDirect = "banded_cholesky";
 constexpr const char* kBest = "foot_newton";
 
 std::shared_ptr<const Problem> FifteenPoints(bool free) {
   DataSet data;
   data.name = "fifteen_points";
-  data.points.resize(kNumPoints, 2);
-  for (int i = 0; i < kNumPoints; ++i) data.points.row(i) << kPoints[i][0], kPoints[i][1];
+  data.points.resize(kFigure6Size, 2);
+  for (int i = 0; i < kFigure6Size; ++i)
+    data.points.row(i) << kFigure6Points[i][0], kFigure6Points[i][1];
   FitSpec spec;
   spec.name = data.name;
   spec.control_points = kControlPoints;
@@ -106,7 +106,7 @@ std::vector<PlotPanel> BothCurves(const ExperimentTables& tables) {
                             rows.Numbers("y"), PlotSeries::Style::kLine, color++});
   }
   PlotSeries data = {"data", {}, {}, PlotSeries::Style::kCircles, 6};
-  for (const auto& point : kPoints) {
+  for (const auto& point : kFigure6Points) {
     data.x.push_back(point[0]);
     data.y.push_back(point[1]);
   }

@@ -12,9 +12,9 @@ namespace {
 
 // Distance from the direct answer nearest to the start, over the data's size, that counts as equal.
 constexpr double kEqual = 1e-6;
-constexpr int kProblems = 4;
+constexpr int kNumProblems = 4;
 
-struct Case {
+struct FitInOneCall {
   std::string name;
   std::shared_ptr<const Problem> problem;
 };
@@ -32,17 +32,18 @@ std::shared_ptr<const Problem> WithControlPoints(const Problem& outline, int n) 
   return CheckedFit(outline.curve_fit()->data(), spec);
 }
 
-bool RunCases(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
+bool RunFitsInOneCall(const ExperimentRun& run, ExperimentTables* tables, std::string* error) {
   CsvTable& runs = (*tables)[""] = CsvTable(RunColumnsBehind({"distance_to_direct"}));
   const auto through = CatalogueProblem("rhino_interpolation", error);
   const auto near = CatalogueProblem("rhino", error);
   if (through == nullptr || near == nullptr) return false;
-  const std::vector<Case> cases = {{"interpolation", through},
-                                   {"approximation", near},
-                                   {"too few points", WithControlPoints(*near, 150)},
-                                   {"two on one parameter", WithTwoOnOneParameter(*through)}};
+  const std::vector<FitInOneCall> cases = {
+      {"interpolation", through},
+      {"approximation", near},
+      {"too few points", WithControlPoints(*near, 150)},
+      {"two on one parameter", WithTwoOnOneParameter(*through)}};
   double done = 0.0;
-  for (const Case& c : cases) {
+  for (const FitInOneCall& c : cases) {
     if (run.progress) run.progress(done / static_cast<double>(cases.size()), c.name);
     done += 1.0;
     ProblemRuns on(c.name, c.problem, run.repetitions);
@@ -83,10 +84,10 @@ Judgement JudgeOneCall(const ExperimentTables& tables) {
                       "start, to 1e-6 of the size, on " +
                       std::to_string(nearest) + " (the farthest is " + ShortNumber(worst, 2) +
                       " away)";
-  judgement.verdict = solved < all      ? ClaimVerdict::kDoesNotHold
-                      : all < kProblems ? ClaimVerdict::kUndecided
-                      : nearest == all  ? ClaimVerdict::kHolds
-                                        : ClaimVerdict::kInPart;
+  judgement.verdict = solved < all         ? ClaimVerdict::kDoesNotHold
+                      : all < kNumProblems ? ClaimVerdict::kUndecided
+                      : nearest == all     ? ClaimVerdict::kHolds
+                                           : ClaimVerdict::kInPart;
   return judgement;
 }
 
@@ -123,7 +124,7 @@ Experiment AcceleratedGimOneCall() {
       "share one parameter. Where the minimum is not unique the direct answer is the one nearest "
       "to "
       "the start.";
-  experiment.run = &RunCases;
+  experiment.run = &RunFitsInOneCall;
   experiment.shown = [](const ExperimentTables& tables) {
     CsvTable shown({"problem", "solver", "status", "iterations", "x cholesky", "E", "|g|",
                     "distance to direct"});

@@ -33,7 +33,7 @@ constexpr const char* kPairedSolvers[] = {"gim", "weighted_pia", "local_pia", "e
                                           "preconditioned_pia"};
 // The square root of the gap is the error; below this gap it is rounding.
 constexpr double kLeastGap = 1e-26;
-constexpr int kFewest = 6;
+constexpr int kFewestErrors = 6;
 
 /// Errors per iteration above rounding.
 std::vector<double> Errors(const CsvTable& trace) {
@@ -71,7 +71,7 @@ void AddRates(const CsvTable& traces, CsvTable* rates) {
     for (const std::string& solver : on.Distinct("solver")) {
       const std::vector<double> errors = Errors(on.Where("solver", solver));
       std::vector<std::string> row = {problem, solver, std::to_string(errors.size()), "", "", ""};
-      if (static_cast<int>(errors.size()) > kFewest) {
+      if (static_cast<int>(errors.size()) > kFewestErrors) {
         const std::size_t last = errors.size() - 1;
         row[3] = NumberText(MeanFactor(errors, 0, last / 3));
         row[4] = NumberText(MeanFactor(errors, last - last / 3, last));

@@ -16,8 +16,6 @@ constexpr PublishedRow kTable1[] = {{"rhino", 276, 19834, 23, 2163},
                                     {"squirrel", 314, 30312, 20, 2390},
                                     {"dolphin", 105, 3281, 20, 906},
                                     {"cat", 297, 22750, 24, 2250}};
-constexpr const char* kLspia = "lspia";
-constexpr const char* kLbfgs = "lbfgs";
 // The iterations whose curves are drawn, beside the last one.
 constexpr int kFirst = 0;
 constexpr int kSecond = 3;

@@ -7,12 +7,9 @@
 namespace batten {
 namespace {
 
-constexpr double kSize = 10.0;
 constexpr long kMostPoints = 10'000'000;
 // Above it a run is made once: it takes long enough to be measured.
 constexpr long kManyPoints = 100'000;
-constexpr const char* kLspia = "lspia";
-constexpr const char* kLbfgs = "lbfgs";
 
 struct Grid {
   int n;
@@ -40,7 +37,8 @@ bool RunSizes(const ExperimentRun& run, ExperimentTables* tables, std::string* /
                    std::to_string(m) + " points, " + std::to_string(size.n) + " control points");
     }
     done += 1.0;
-    ProblemRuns on("loop", LoopProblem(m, size.n, kSize), m > kManyPoints ? 1 : run.repetitions);
+    ProblemRuns on("loop", LoopProblem(m, size.n, kLoopSize),
+                   m > kManyPoints ? 1 : run.repetitions);
     CsvTable rows(RunColumns());
     for (RunSpec spec : {NativeSpec(1e-6), RaceSpec(1e-6)}) {
       if (spec.mode == Mode::kNative && m > kManyPoints) continue;

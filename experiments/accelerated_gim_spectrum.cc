@@ -16,9 +16,8 @@ namespace {
 constexpr std::uint64_t kSeed = 20161202;
 constexpr double kTolerance = 0.05;
 constexpr double kMostIterations = 3000.0;
-constexpr const char* kOptimal = "lspia/step=optimal";
 // The methods of which the matrix foretells the rate.
-constexpr const char* kForetold[] = {"gim", "weighted_pia", kOptimal, "jacobi_pia/w=1"};
+constexpr const char* kForetold[] = {"gim", "weighted_pia", kOptimalLspia, "jacobi_pia/w=1"};
 
 struct Parameters {
   std::string name;
@@ -114,7 +113,7 @@ double LargestFactor(const Eigen::VectorXd& eigenvalues, double step) {
 
 /// Of the method's matrix; NaN for methods that have none.
 double PredictedRate(const Problem& problem, const std::string& solver, const RunResult& run) {
-  if (solver == kOptimal) {
+  if (solver == kOptimalLspia) {
     const Eigen::VectorXd all = EigenvaluesOfNormalMatrix(problem, false);
     return (all.maxCoeff() - all.minCoeff()) / (all.maxCoeff() + all.minCoeff());
   }
@@ -155,11 +154,11 @@ bool RunParameters(const ExperimentRun& run, ExperimentTables* tables, std::stri
     done += 1.0;
     ProblemRuns on("rhino_interpolation", AtParameters(*outline, parameters.values),
                    run.repetitions);
-    AddRuns(parameters.name, {"gim", "weighted_pia", kOptimal, "jacobi_pia/w=1", "lbfgs", "cg"},
-            &on, &runs);
+    AddRuns(parameters.name,
+            {"gim", "weighted_pia", kOptimalLspia, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
   }
   ProblemRuns on("dolphin", dolphin, run.repetitions);
-  AddRuns("the dolphin as it is", {kOptimal, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
+  AddRuns("the dolphin as it is", {kOptimalLspia, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
   return true;
 }
 

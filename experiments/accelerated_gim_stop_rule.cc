@@ -8,13 +8,12 @@
 namespace batten {
 namespace {
 
-constexpr const char* kOptimal = "lspia/step=optimal";
 // 1 / C, C the largest column sum.
 constexpr const char* kColumn = "lspia/step=max_column/relaxation=0.5";
 constexpr const char* kPublishedRule = "|A'r|^2 < 1e-6 of the first";
 // The square root of the published 1e-6: RunSpec compares |g|, which is 2 |A'r|.
 constexpr double kPublishedTolerance = 1e-3;
-constexpr int kCurves = 2;
+constexpr int kNumCurves = 2;
 
 /// How far the control points `x` are from the least-squares ones.
 struct Distance {
@@ -33,9 +32,9 @@ bool RunCurves(const ExperimentRun& run, ExperimentTables* tables, std::string* 
   CsvTable& runs = (*tables)[""] = CsvTable(RunColumnsBehind({"rule", "largest", "norm"}));
   CsvTable& traces = (*tables)["traces"] =
       CsvTable({"problem", "solver", "iteration", "gradient_norm", "largest"});
-  for (int number = 0; number < kCurves; ++number) {
+  for (int number = 0; number < kNumCurves; ++number) {
     const std::string name = "curve " + std::to_string(number + 1);
-    if (run.progress) run.progress(static_cast<double>(number) / kCurves, name);
+    if (run.progress) run.progress(static_cast<double>(number) / kNumCurves, name);
     const PublishedCurve curve = MakePublishedCurve(number);
     ProblemRuns on(name, curve.problem, run.repetitions);
     CsvTable unused(RunColumns());
@@ -43,7 +42,7 @@ bool RunCurves(const ExperimentRun& run, ExperimentTables* tables, std::string* 
     const StopRule rules[] = {{kPublishedRule, RaceSpec(kPublishedTolerance)},
                               {kRaceRule, RaceSpec(1e-10)}};
     for (const StopRule& rule : rules) {
-      for (const char* solver : {kOptimal, kColumn, "cg", "lbfgs"}) {
+      for (const char* solver : {kOptimalLspia, kColumn, "cg", "lbfgs"}) {
         if (InterruptRequested()) return true;
         RunSpec spec = rule.spec;
         spec.start = curve.start;
@@ -80,10 +79,10 @@ Judgement JudgeMisleading(const ExperimentTables& tables) {
   for (const std::string& problem : tables.at("").Distinct("problem")) {
     const auto ratio = [&](const char* column) {
       return Published(tables, problem, kColumn, column) /
-             Published(tables, problem, kOptimal, column);
+             Published(tables, problem, kOptimalLspia, column);
     };
     const double soon = Published(tables, problem, kColumn, "iterations");
-    const double late = Published(tables, problem, kOptimal, "iterations");
+    const double late = Published(tables, problem, kOptimalLspia, "iterations");
     const double largest = ratio("largest");
     if (std::isnan(soon) || std::isnan(late) || std::isnan(largest)) continue;
     ++judged;
@@ -96,7 +95,7 @@ Judgement JudgeMisleading(const ExperimentTables& tables) {
         " times as far in the largest distance of a control point, " + Rounded(ratio("norm"), 1) +
         " times in |P - P*|, " + Rounded(std::sqrt(ratio("gap")), 1) + " times in |A (P - P*)|";
   }
-  if (judged < kCurves) return judgement;
+  if (judged < kNumCurves) return judgement;
   judgement.verdict = agree == judged ? ClaimVerdict::kHolds
                       : farther > 0   ? ClaimVerdict::kInPart
                                       : ClaimVerdict::kDoesNotHold;
@@ -115,7 +114,7 @@ std::vector<PlotPanel> RuleAndDistance(const ExperimentTables& tables) {
     panel.log_y = true;
     int color = 0;
     for (const auto& [solver, name] :
-         {std::pair(kOptimal, "optimal step"), {kColumn, "step 1 / C"}}) {
+         {std::pair(kOptimalLspia, "optimal step"), {kColumn, "step 1 / C"}}) {
       const CsvTable rows = on.Where("solver", solver);
       panel.series.push_back({name, rows.Numbers("iteration"), rows.Numbers(column),
                               PlotSeries::Style::kLinePoints, color++});

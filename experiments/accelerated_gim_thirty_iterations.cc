@@ -8,8 +8,6 @@
 namespace batten {
 namespace {
 
-constexpr double kSize = 10.0;
-
 struct Case {
   std::string name;
   std::shared_ptr<const Problem> problem;
@@ -23,7 +21,7 @@ bool Cases(std::vector<Case>* cases, std::string* error) {
   for (const int m : {9, 12, 20, 30, 50, 80, 100}) {
     for (const int n : {m, (m + 1) / 2}) {
       cases->push_back(
-          {"loop_" + std::to_string(m) + "_" + std::to_string(n), LoopProblem(m, n, kSize)});
+          {"loop_" + std::to_string(m) + "_" + std::to_string(n), LoopProblem(m, n, kLoopSize)});
     }
   }
   return true;

@@ -11,7 +11,6 @@
 namespace batten {
 namespace {
 
-constexpr double kSize = 10.0;
 constexpr const char* kEarly = "early stopping";
 constexpr const char* kWarm = "warm start";
 constexpr const char* kTied = "control points tied";
@@ -29,7 +28,7 @@ RunResult AddRun(const std::string& reason, const std::string& setting, const st
 
 /// Iterations until the gap is reached, then the time of a run of so many.
 void RunEarly(int repetitions, CsvTable* table) {
-  ProblemRuns on("loop", LoopProblem(1'000'000, 10'000, kSize), repetitions);
+  ProblemRuns on("loop", LoopProblem(1'000'000, 10'000, kLoopSize), repetitions);
   AddRun(kEarly, "exact", kCholesky, RaceSpec(1e-10), &on, table);
   for (const char* solver : {"cg", "lbfgs", "lspia"}) {
     CsvTable unused(RunColumns());
@@ -52,7 +51,7 @@ void RunEarly(int repetitions, CsvTable* table) {
 /// The answer of one data set as the start for another, every point of which has moved by up to
 /// `moved` sizes.
 void RunWarm(int repetitions, CsvTable* table) {
-  const std::shared_ptr<const Problem> before = LoopProblem(1'000'000, 10'000, kSize);
+  const std::shared_ptr<const Problem> before = LoopProblem(1'000'000, 10'000, kLoopSize);
   const CurveFit& fit = *before->curve_fit();
   RunResult last;
   NameSpec direct;
@@ -64,7 +63,8 @@ void RunWarm(int repetitions, CsvTable* table) {
     if (InterruptRequested()) return;
     DataSet data = fit.data();
     const Eigen::VectorXd noise = RandomStart(data.points.size(), 7);
-    data.points += moved * kSize * Eigen::Map<const Points>(noise.data(), data.points.rows(), 2);
+    data.points +=
+        moved * kLoopSize * Eigen::Map<const Points>(noise.data(), data.points.rows(), 2);
     const std::shared_ptr<const Problem> now = CheckedFit(std::move(data), fit.spec());
     ProblemRuns on("loop", now, repetitions);
     const std::string setting = "moved by " + NumberText(moved);
@@ -81,7 +81,7 @@ void RunWarm(int repetitions, CsvTable* table) {
 
 /// P_0 = P_(n/2): a curve that meets itself. After elimination a row can reach half way around.
 std::shared_ptr<const Problem> Tied(int n) {
-  const std::shared_ptr<const Problem> loop = LoopProblem(4 * n, n, kSize);
+  const std::shared_ptr<const Problem> loop = LoopProblem(4 * n, n, kLoopSize);
   std::string error;
   std::unique_ptr<Problem> tied =
       MakeFitProblem(loop->curve_fit()->data(), loop->curve_fit()->spec(), &error);
@@ -134,7 +134,7 @@ std::shared_ptr<const Problem> BelowALine(const Problem& loop, const Eigen::Vect
 void RunBounds(int repetitions, CsvTable* table) {
   for (const int n : {100, 400, 1600}) {
     if (InterruptRequested()) return;
-    const std::shared_ptr<const Problem> loop = LoopProblem(4 * n, n, kSize);
+    const std::shared_ptr<const Problem> loop = LoopProblem(4 * n, n, kLoopSize);
     ProblemRuns without("loop", loop, repetitions);
     const RunResult direct = AddRun(kBounds, "n = " + std::to_string(n) + " (without)", kCholesky,
                                     RaceSpec(1e-8), &without, table);

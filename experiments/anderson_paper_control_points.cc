@@ -5,7 +5,7 @@
 namespace batten {
 namespace {
 
-constexpr const char* kSize = "control_points";
+constexpr const char* kCountColumn = "control_points";
 constexpr int kFewest = 8;
 constexpr int kMost = 88;
 constexpr int kStep = 10;
@@ -34,20 +34,22 @@ Experiment AndersonPaperControlPoints() {
       "The noisy example's 200 points with 8 to 88 control points. Time per iteration over the "
       "first 30, set-up left out.";
   experiment.run = &RunControlPoints;
-  experiment.shown = [](const ExperimentTables& tables) { return GrowthShown(tables, kSize); };
+  experiment.shown = [](const ExperimentTables& tables) {
+    return GrowthShown(tables, kCountColumn);
+  };
   experiment.claims = {
       {"the cost per iteration is linear in the control points", "its text",
        "holds where the time per iteration of both methods grows no faster than "
        "control_points^1.15, by a fit of the logarithms, in part where that of one, else does not "
        "hold",
-       [](const ExperimentTables& tables) { return JudgeLinear(tables, kSize); }},
+       [](const ExperimentTables& tables) { return JudgeLinear(tables, kCountColumn); }},
       {"PDM, TDM and SDM slow down fast with the size: control points", "its text",
        "holds where their times per iteration all grow faster than control_points^1.5, in part "
        "where some do, else does not hold: their systems have a band",
-       [](const ExperimentTables& tables) { return JudgeSlowsDown(tables, kSize); }}};
+       [](const ExperimentTables& tables) { return JudgeSlowsDown(tables, kCountColumn); }}};
   experiment.figures = {
       {"control_points_times", "Time per iteration against the number of control points.", 1,
-       [](const ExperimentTables& tables) { return AgainstGrowth(tables, kSize); }}};
+       [](const ExperimentTables& tables) { return AgainstGrowth(tables, kCountColumn); }}};
   return experiment;
 }
 

@@ -21,7 +21,7 @@ constexpr Recipe kRecipes[] = {{"smooth", "cat_2000", 90, 100, 8, 0.0},
                                {"sharp", "cat_2000", 0, 90, 20, 0.0},
                                {"noisy", "squirrel_2000", 140, 200, 8, 0.03},
                                {"crawling", "rhino_2000", 90, 200, 8, 0.03}};
-constexpr std::uint64_t kSeed = 20200601;
+constexpr std::uint64_t kDataSeed = 20200601;
 
 Points MovingMean(const Points& closed, int reach) {
   const Eigen::Index m = closed.rows();
@@ -52,7 +52,7 @@ bool MakeExample(const Recipe& recipe, PaperExample* example, std::string* error
   for (int k = 0; recipe.smoothing > 0 && k < 3; ++k) points = MovingMean(points, recipe.smoothing);
   points = Every(points, recipe.points);
   ScaleToUnitBox(&points);
-  const Eigen::VectorXd noise = RandomStart(points.size(), kSeed);
+  const Eigen::VectorXd noise = RandomStart(points.size(), kDataSeed);
   points += recipe.noise * Eigen::Map<const Points>(noise.data(), points.rows(), points.cols());
   *example = {recipe.name, recipe.control_points, std::move(points)};
   return true;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "experiments/anderson_paper_runs.h"
 #include "experiments/experiment_runs.h"
@@ -11,7 +10,6 @@
 namespace batten {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kDigits = 3;
 
 /// The rows of both methods on one example.
@@ -79,7 +77,7 @@ std::string Against(const Pair& pair, const char* column, double factor, const c
 
 /// The last error that `trace` has had by `time`; NaN before its first row.
 double ErrorAt(const CsvTable& trace, double time) {
-  double error = kNaN;
+  double error = NAN;
   for (std::size_t row = 0; row < trace.num_rows(); ++row) {
     if (!(trace.Number(row, "seconds") <= time)) break;
     error = trace.Number(row, "foot_energy");
@@ -92,11 +90,11 @@ double ShareOfTimes(const CsvTable& lbfgs, const CsvTable& anderson) {
   constexpr int kTimes = 200;
   constexpr double kRounding = 1e-6;
   // Row 0 is the start.
-  if (lbfgs.num_rows() < 2 || anderson.num_rows() < 2) return kNaN;
+  if (lbfgs.num_rows() < 2 || anderson.num_rows() < 2) return NAN;
   const double begin = std::min(lbfgs.Number(1, "seconds"), anderson.Number(1, "seconds"));
   const double end = std::max(lbfgs.Number(lbfgs.num_rows() - 1, "seconds"),
                               anderson.Number(anderson.num_rows() - 1, "seconds"));
-  if (!(begin > 0.0) || !(end > begin)) return kNaN;
+  if (!(begin > 0.0) || !(end > begin)) return NAN;
   int smaller = 0;
   for (int k = 0; k < kTimes; ++k) {
     const double time = begin * std::pow(end / begin, (k + 0.5) / kTimes);
@@ -118,7 +116,7 @@ double LargestRatio(const Pair& traces) {
     const std::string iteration = std::to_string(k);
     const double ratio = OnlyNumber(traces.anderson.Where("iteration", iteration), "foot_energy") /
                          OnlyNumber(traces.lbfgs.Where("iteration", iteration), "foot_energy");
-    if (!(ratio > 0.0)) return kNaN;
+    if (!(ratio > 0.0)) return NAN;
     largest = std::max({largest, ratio, 1.0 / ratio});
   }
   return largest;

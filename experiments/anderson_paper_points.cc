@@ -6,7 +6,7 @@
 namespace batten {
 namespace {
 
-constexpr const char* kSize = "points";
+constexpr const char* kPointsColumn = "points";
 
 /// `points` and `extra` more around each, in a box of side 0.05.
 Points WithExtraPoints(const Points& points, int extra) {
@@ -54,19 +54,21 @@ Experiment AndersonPaperPoints() {
       "over the first 30, set-up left out. An iteration of L-BFGS is one or more evaluations; one "
       "of PDM, TDM and SDM holds a search for all feet, one of Anderson two.";
   experiment.run = &RunPoints;
-  experiment.shown = [](const ExperimentTables& tables) { return GrowthShown(tables, kSize); };
+  experiment.shown = [](const ExperimentTables& tables) {
+    return GrowthShown(tables, kPointsColumn);
+  };
   experiment.claims = {
       {"the cost per iteration is linear in the points", "its text",
        "holds where the time per iteration of both methods grows no faster than points^1.15, by a "
        "fit of the logarithms, in part where that of one, else does not hold",
-       [](const ExperimentTables& tables) { return JudgeLinear(tables, kSize); }},
+       [](const ExperimentTables& tables) { return JudgeLinear(tables, kPointsColumn); }},
       {"PDM, TDM and SDM slow down fast with the size: points", "its text",
        "holds where their times per iteration all grow faster than points^1.5, in part where some "
        "do, else does not hold",
-       [](const ExperimentTables& tables) { return JudgeSlowsDown(tables, kSize); }}};
+       [](const ExperimentTables& tables) { return JudgeSlowsDown(tables, kPointsColumn); }}};
   experiment.figures = {
       {"points_times", "Time per iteration against the number of points.", 1,
-       [](const ExperimentTables& tables) { return AgainstGrowth(tables, kSize); }}};
+       [](const ExperimentTables& tables) { return AgainstGrowth(tables, kPointsColumn); }}};
   return experiment;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "experiments/curve_shape.h"
 #include "experiments/experiment_runs.h"
@@ -13,7 +12,6 @@
 namespace batten {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Seconds from which on a run is made once.
 constexpr double kLongRun = 0.5;
 constexpr double kGaps[] = {1e-3, 1e-6};
@@ -69,8 +67,8 @@ Eigen::VectorXd Feet(const Problem& problem, const Eigen::VectorXd& x, double* e
 
 /// Loops of the curve that no point is nearest to; NaN where there is no curve.
 double FreeLoops(const Problem& problem, const Eigen::VectorXd& x) {
-  if (!x.allFinite()) return kNaN;
-  double energy = kNaN;
+  if (!x.allFinite()) return NAN;
+  double energy = NAN;
   const Eigen::VectorXd feet = Feet(problem, x, &energy);
   const CurveFit& fit = *problem.curve_fit();
   return MeasureShape(fit.Curve(x), fit.data().points, feet).num_free_loops;
@@ -78,8 +76,8 @@ double FreeLoops(const Problem& problem, const Eigen::VectorXd& x) {
 
 /// E at the feet of the minimum that `x` belongs to: newton, from the feet.
 double Polished(const Problem& problem, const Eigen::VectorXd& x) {
-  if (!x.allFinite()) return kNaN;
-  double energy = kNaN;
+  if (!x.allFinite()) return NAN;
+  double energy = NAN;
   const Eigen::VectorXd feet = Feet(problem, x, &energy);
   RunSpec spec = RaceSpec(0.0);
   spec.max_seconds = 10.0;  // The count ends it, on a busy machine too.
@@ -120,7 +118,7 @@ double RejectedShare(const RunResult& result) {
     if (!ParseNumber(value.substr(of + 4, end - of - 4), &tried)) continue;
     return rejected / tried;
   }
-  return kNaN;
+  return NAN;
 }
 
 }  // namespace
@@ -162,8 +160,8 @@ RunSpec FreeRaceSpec() {
 }
 
 double FootEnergy(const Problem& problem, const Eigen::VectorXd& x) {
-  if (!x.allFinite()) return kNaN;
-  double energy = kNaN;
+  if (!x.allFinite()) return NAN;
+  double energy = NAN;
   Feet(problem, x, &energy);
   return energy;
 }
@@ -200,7 +198,7 @@ RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& 
              {ToString(result.outcome.reason), NumberText(iterations),
               std::to_string(result.counts.projections), NumberText(result.seconds),
               NumberText((result.seconds - result.setup_seconds) / std::max(iterations, 1.0)),
-              NumberText(kept.empty() ? kNaN : kept.front().energy), NumberText(result.energy),
+              NumberText(kept.empty() ? NAN : kept.front().energy), NumberText(result.energy),
               NumberText(FootEnergy(*on.problem, result.x)), NumberText(polished),
               NumberText(PolygonLength(SampledCurve(*on.problem, result.x))),
               NumberText(FreeLoops(*on.problem, result.x))});
@@ -209,8 +207,8 @@ RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& 
       // One that ends above its start comes to no minimum.
       return polished < kept.front().energy && point.energy <= (1.0 + gap) * polished;
     });
-    row.push_back(NumberText(at == kept.end() ? kNaN : at->iteration));
-    row.push_back(NumberText(at == kept.end() ? kNaN : at->seconds));
+    row.push_back(NumberText(at == kept.end() ? NAN : at->iteration));
+    row.push_back(NumberText(at == kept.end() ? NAN : at->seconds));
   }
   row.push_back(NumberText(RejectedShare(result)));
   runs->AddRow(row);
@@ -228,12 +226,12 @@ double SecondsPerIteration(const Problem& problem, const std::string& solver, in
   spec.max_seconds = 5.0;
   spec.keep_trace = false;
   const RunResult result = MedianRun(problem, Parsed(solver), spec, repetitions);
-  if (!result.skipped.empty() || result.iterations == 0) return kNaN;
+  if (!result.skipped.empty() || result.iterations == 0) return NAN;
   return (result.seconds - result.setup_seconds) / result.iterations;
 }
 
 double OnlyNumber(const CsvTable& rows, const std::string& column) {
-  return rows.num_rows() == 1 ? rows.Number(0, column) : kNaN;
+  return rows.num_rows() == 1 ? rows.Number(0, column) : NAN;
 }
 
 bool InOneBasin(double polished, double other) {

@@ -58,7 +58,7 @@ double Fewest(const CsvTable& on, int first, int last, int* num_others) {
   return fewest;
 }
 
-std::string Shown(double count) { return std::isnan(count) ? "-" : NumberText(count); }
+std::string ShownCount(double count) { return std::isnan(count) ? "-" : NumberText(count); }
 
 bool AllWindowsThere(const CsvTable& on) {
   for (int window = 1; window <= kMostWindow; ++window) {
@@ -90,7 +90,7 @@ Judgement JudgeWindow(const ExperimentTables& tables) {
     }
     compared += counts ? 1 : 0;
     useless += counts && !IsSooner(large, kHelps * small) ? 1 : 0;
-    judgement.because += Shown(large) + " against " + Shown(small);
+    judgement.because += ShownCount(large) + " against " + ShownCount(small);
     if (small_others + large_others > 0) {
       judgement.because +=
           " (" + std::to_string(small_others + large_others) + " of 8 end at other minima)";

@@ -12,7 +12,7 @@ namespace {
 using Real = CoupledEquations::Real;
 using Row = std::vector<Real>;
 
-Real Dot(const Row& a, const Row& b) {
+Real RowProduct(const Row& a, const Row& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), Real(0));
 }
 
@@ -20,7 +20,7 @@ Real Dot(const Row& a, const Row& b) {
 void RemoveParts(const CoupledEquations::Rows& orthonormal, Row* row) {
   for (int pass = 0; pass < 2; ++pass) {
     for (const Row& unit : orthonormal) {
-      const Real part = Dot(unit, *row);
+      const Real part = RowProduct(unit, *row);
       for (std::size_t k = 0; k < row->size(); ++k) (*row)[k] -= part * unit[k];
     }
   }
@@ -92,7 +92,7 @@ CoupledEquations::CoupledEquations(const std::vector<const EquationRow*>& equati
     Row sizes = row;
     for (const auto& [entry, coefficient] : equation->row) row[place[entry]] = coefficient;
     for (const auto& [entry, size] : equation->sizes) sizes[place[entry]] = size;
-    const Real length = std::sqrt(Dot(row, row));
+    const Real length = std::sqrt(RowProduct(row, row));
     for (std::size_t k = 0; k < row.size() && length > 0; ++k) {
       row[k] /= length;
       sizes[k] /= length;
@@ -111,7 +111,7 @@ void CoupledEquations::ChooseIndependent(std::size_t num_eliminated) {
   constexpr Real kIndependent = 1e-12L;
   Rows left = rows_;
   Rows rows, sizes;
-  const auto length = [](const Row& row) { return std::sqrt(Dot(row, row)); };
+  const auto length = [](const Row& row) { return std::sqrt(RowProduct(row, row)); };
   const auto next = [&] {
     return std::max_element(left.begin(), left.end(),
                             [&](const Row& a, const Row& b) { return length(a) < length(b); });

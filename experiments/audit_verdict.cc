@@ -27,11 +27,11 @@ Verdict Fails(const std::string& quantity, double claimed, double found, double 
 // the worst direction. Sums over points add a rounding for each. The derivative by a free parameter
 // has one level of the recursion less, and instead of it a quotient, a product and a difference.
 constexpr double kRoundings = 4 * 9 + 12;
-constexpr auto kUnitRoundoff = static_cast<double>(AuditSums::kUnitRoundoff);
+constexpr auto kRoundoff = static_cast<double>(AuditSums::kUnitRoundoff);
 
 double EnergyAllowed(const AuditReport& report) {
-  return kRoundings * (report.energy_floor + kUnitRoundoff * report.energy) +
-         report.num_summands * kUnitRoundoff * report.energy;
+  return kRoundings * (report.energy_floor + kRoundoff * report.energy) +
+         report.num_summands * kRoundoff * report.energy;
 }
 
 Verdict VerifyNumbers(const Claim& claim, const AuditReport& report) {

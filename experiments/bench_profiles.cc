@@ -10,8 +10,6 @@
 namespace batten {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Share of `count` that the sorted finite values make up, step by step.
 Steps StepsOf(std::vector<double> values, std::size_t count) {
   values.erase(std::remove_if(values.begin(), values.end(),
@@ -50,10 +48,10 @@ std::vector<Steps> PerformanceProfiles(const CostTable& costs) {
   for (std::size_t s = 0; s < NumSolvers(costs); ++s) {
     std::vector<double> ratios;
     for (const std::vector<double>& problem : costs) {
-      double best = kInfinity;
+      double best = HUGE_VAL;
       for (const double cost : problem) best = std::min(best, cost);  // passes over NaN
       // Infinity, too, where nobody solves it: the ratio would be none.
-      ratios.push_back(std::isinf(problem[s]) ? kInfinity : problem[s] / best);
+      ratios.push_back(std::isinf(problem[s]) ? HUGE_VAL : problem[s] / best);
     }
     const std::size_t count = CountRun(ratios);
     profiles.push_back(StepsOf(std::move(ratios), count));
@@ -95,7 +93,7 @@ double ShiftedGeometricMean(const std::vector<double>& values, double shift) {
 CostTable ChargeFailures(const CostTable& costs, double factor) {
   CostTable charged;
   for (const std::vector<double>& problem : costs) {
-    double largest = -kInfinity;
+    double largest = -HUGE_VAL;
     for (const double cost : problem) {
       if (std::isfinite(cost)) largest = std::max(largest, cost);
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <tuple>
 
@@ -14,9 +13,6 @@
 
 namespace batten {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string InstanceLabel(const nlohmann::json& row) {
   std::string text = TextAt(row, "problem") + " | " + TextAt(row, "terms");
@@ -83,9 +79,9 @@ class Collector {
     instance.minimum_energy = NumberAt(measured, "minimum_energy");
     instance.truth_energy = NumberAt(measured, "truth_energy");
     // A truth without noise is a minimum, not a floor.
-    if (!(NumberAt(measured, "noise") > 0.0)) instance.truth_energy = kNan;
+    if (!(NumberAt(measured, "noise") > 0.0)) instance.truth_energy = NAN;
     instance.has_basins = std::isnan(instance.minimum_energy);
-    instance.start_energy = kNan;
+    instance.start_energy = NAN;
     measured_.push_back(measured);
     results_.instances.push_back(std::move(instance));
     return place->second;
@@ -117,7 +113,7 @@ class Collector {
     if (FlagAt(row, "overlapped")) {
       results_.overlapped = true;
     } else if (ran || failed) {
-      run.seconds.push_back(failed ? kInfinity : NumberAt(row, "seconds"));
+      run.seconds.push_back(failed ? HUGE_VAL : NumberAt(row, "seconds"));
     }
     for (const char* key : {"energy", "iterations", "energy_calls", "gradient_calls", "stream"}) {
       const bool known = row.contains(key) && run.first->contains(key);
@@ -158,7 +154,7 @@ class Collector {
     if (ends.empty()) return;
     const std::vector<int> basins = FindBasins(*basis, NumberAt(measured, "size"), ends);
     const int count = *std::max_element(basins.begin(), basins.end()) + 1;
-    instance.basin_energies.assign(static_cast<std::size_t>(count), kInfinity);
+    instance.basin_energies.assign(static_cast<std::size_t>(count), HUGE_VAL);
     for (std::size_t k = 0; k < ends.size(); ++k) {
       runs[k]->basin = basins[k];
       double& least = instance.basin_energies[static_cast<std::size_t>(basins[k])];

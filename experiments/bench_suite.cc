@@ -16,15 +16,14 @@
 namespace batten {
 namespace {
 
-constexpr auto kRequired = StrictObject::Presence::kRequired;
-constexpr auto kOptional = StrictObject::Presence::kOptional;
+using Presence = StrictObject::Presence;
 constexpr double kLongest = 1e9;  // seconds
 constexpr int kLargest = std::numeric_limits<int>::max();
 
 /// First of all: problems, terms and solvers may come from them. Paths begin at the suite's folder.
 bool ReadPlugins(const StrictObject& file, const std::string& suite_path) {
   std::vector<std::string> paths;
-  if (!file.Texts("plugins", kOptional, &paths)) return false;
+  if (!file.Texts("plugins", Presence::kOptional, &paths)) return false;
   const std::filesystem::path folder = std::filesystem::path(suite_path).parent_path();
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::string why = LoadPlugins({(folder / paths[i]).string()}, &LoadedPlugins());
@@ -35,7 +34,7 @@ bool ReadPlugins(const StrictObject& file, const std::string& suite_path) {
 
 bool ReadProblems(const StrictObject& file, BenchSuite* suite, std::string* error) {
   std::vector<StrictObject> entries;
-  if (!file.Entries("problems", kRequired, "a list of problems", &entries)) return false;
+  if (!file.Entries("problems", Presence::kRequired, "a list of problems", &entries)) return false;
   std::set<std::string> labels;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::string place = "/problems/" + std::to_string(i);
@@ -54,7 +53,7 @@ bool ReadProblems(const StrictObject& file, BenchSuite* suite, std::string* erro
 
 bool ReadTerms(const StrictObject& file, BenchSuite* suite) {
   std::vector<std::string> texts = {"own"};
-  if (!file.Texts("terms", kOptional, &texts)) return false;
+  if (!file.Texts("terms", Presence::kOptional, &texts)) return false;
   std::set<std::string> labels;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const std::string place = "terms/" + std::to_string(i);
@@ -91,14 +90,14 @@ bool ReadTerms(const StrictObject& file, BenchSuite* suite) {
 
 bool ReadExclusions(const StrictObject& file, BenchSuite* suite) {
   std::vector<StrictObject> entries;
-  if (!file.Entries("exclude", kOptional, "a list of exclusions", &entries)) return false;
+  if (!file.Entries("exclude", Presence::kOptional, "a list of exclusions", &entries)) return false;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     BenchExclusion exclusion;
     exclusion.place = "/exclude/" + std::to_string(i);
     if (!entries[i].HasOnly({"problems", "terms", "solvers"}) ||
-        !entries[i].Texts("problems", kOptional, &exclusion.problems) ||
-        !entries[i].Texts("terms", kOptional, &exclusion.terms) ||
-        !entries[i].Texts("solvers", kOptional, &exclusion.solvers)) {
+        !entries[i].Texts("problems", Presence::kOptional, &exclusion.problems) ||
+        !entries[i].Texts("terms", Presence::kOptional, &exclusion.terms) ||
+        !entries[i].Texts("solvers", Presence::kOptional, &exclusion.solvers)) {
       return false;
     }
     suite->exclusions.push_back(std::move(exclusion));
@@ -109,8 +108,8 @@ bool ReadExclusions(const StrictObject& file, BenchSuite* suite) {
 bool ReadTargets(const StrictObject& file, BenchSuite* suite) {
   StrictObject targets;
   if (!file.Has("targets")) return true;
-  if (!file.Object("targets", kRequired, &targets) || !targets.HasOnly({"gaps"}) ||
-      !targets.Numbers("gaps", kRequired, &suite->gap_targets)) {
+  if (!file.Object("targets", Presence::kRequired, &targets) || !targets.HasOnly({"gaps"}) ||
+      !targets.Numbers("gaps", Presence::kRequired, &suite->gap_targets)) {
     return false;
   }
   for (std::size_t i = 0; i < suite->gap_targets.size(); ++i) {
@@ -127,13 +126,17 @@ bool ReadBudgets(const StrictObject& file, BenchSuite* suite) {
   BenchLimits* const limits = &suite->limits;
   // Below a millisecond no process would even begin.
   constexpr double kShortest = 1e-3;
-  return file.Object("budgets", kRequired, &budgets) &&
+  return file.Object("budgets", Presence::kRequired, &budgets) &&
          budgets.HasOnly({"iterations", "seconds", "cpu_seconds", "wall_seconds", "memory_mb"}) &&
-         budgets.Integer("iterations", kOptional, 0, kLargest, &suite->run.max_iterations) &&
-         budgets.Number("seconds", kOptional, kShortest, kLongest, &suite->run.max_seconds) &&
-         budgets.Number("cpu_seconds", kOptional, kShortest, kLongest, &limits->cpu_seconds) &&
-         budgets.Number("wall_seconds", kOptional, kShortest, kLongest, &limits->wall_seconds) &&
-         budgets.Integer("memory_mb", kOptional, 16, 16'000'000, &limits->memory_mb);
+         budgets.Integer("iterations", Presence::kOptional, 0, kLargest,
+                         &suite->run.max_iterations) &&
+         budgets.Number("seconds", Presence::kOptional, kShortest, kLongest,
+                        &suite->run.max_seconds) &&
+         budgets.Number("cpu_seconds", Presence::kOptional, kShortest, kLongest,
+                        &limits->cpu_seconds) &&
+         budgets.Number("wall_seconds", Presence::kOptional, kShortest, kLongest,
+                        &limits->wall_seconds) &&
+         budgets.Integer("memory_mb", Presence::kOptional, 16, 16'000'000, &limits->memory_mb);
 }
 
 bool ReadRule(const StrictObject& file, BenchSuite* suite) {
@@ -141,44 +144,48 @@ bool ReadRule(const StrictObject& file, BenchSuite* suite) {
   if (!file.Has("rule")) return true;
   RunSpec* const run = &suite->run;
   std::string mode = ToString(run->mode);
-  return file.Object("rule", kRequired, &rule) &&
+  return file.Object("rule", Presence::kRequired, &rule) &&
          rule.HasOnly({"mode", "gradient_tolerance", "native_step", "native_gradient", "threads",
                        "compile"}) &&
-         rule.Word("mode", kOptional, {"race", "native"}, &mode) && FromString(mode, &run->mode) &&
-         rule.Number("gradient_tolerance", kOptional, 0.0, 1.0, &run->gradient_tolerance) &&
-         rule.Number("native_step", kOptional, 0.0, HUGE_VAL, &run->native_step) &&
-         rule.Number("native_gradient", kOptional, 0.0, HUGE_VAL, &run->native_gradient) &&
-         rule.Integer("threads", kOptional, 1, 1024, &run->threads) &&
-         rule.Flag("compile", kOptional, &run->compile);
+         rule.Word("mode", Presence::kOptional, {"race", "native"}, &mode) &&
+         FromString(mode, &run->mode) &&
+         rule.Number("gradient_tolerance", Presence::kOptional, 0.0, 1.0,
+                     &run->gradient_tolerance) &&
+         rule.Number("native_step", Presence::kOptional, 0.0, HUGE_VAL, &run->native_step) &&
+         rule.Number("native_gradient", Presence::kOptional, 0.0, HUGE_VAL,
+                     &run->native_gradient) &&
+         rule.Integer("threads", Presence::kOptional, 1, 1024, &run->threads) &&
+         rule.Flag("compile", Presence::kOptional, &run->compile);
 }
 
 bool ReadSeeds(const StrictObject& file, BenchSuite* suite) {
   StrictObject seeds;
   if (!file.Has("seeds")) return true;
-  return file.Object("seeds", kRequired, &seeds) && seeds.HasOnly({"data", "start", "solver"}) &&
-         seeds.Integers("data", kOptional, 1, kLargest, &suite->seeds.data) &&
-         seeds.Integers("start", kOptional, 1, kLargest, &suite->seeds.start) &&
-         seeds.Integers("solver", kOptional, 0, kLargest, &suite->seeds.solver);
+  return file.Object("seeds", Presence::kRequired, &seeds) &&
+         seeds.HasOnly({"data", "start", "solver"}) &&
+         seeds.Integers("data", Presence::kOptional, 1, kLargest, &suite->seeds.data) &&
+         seeds.Integers("start", Presence::kOptional, 1, kLargest, &suite->seeds.start) &&
+         seeds.Integers("solver", Presence::kOptional, 0, kLargest, &suite->seeds.solver);
 }
 
 /// The first and the last are always among them.
 bool ReadKeptIterates(const StrictObject& file, BenchSuite* suite) {
   constexpr int kMost = 1000;
-  return file.Integer("keep_iterates", kOptional, 0, kMost, &suite->keep_iterates) &&
+  return file.Integer("keep_iterates", Presence::kOptional, 0, kMost, &suite->keep_iterates) &&
          (suite->keep_iterates != 1 || file.Refuse("keep_iterates", "0, or 2 to 1000"));
 }
 
 bool ReadOrder(const StrictObject& file, BenchSuite* suite) {
   StrictObject order;
   constexpr int kMostRepetitions = 1000;
-  if (!file.Integer("repetitions", kOptional, 1, kMostRepetitions, &suite->repetitions) ||
-      !file.Integer("warm_up", kOptional, 0, kMostRepetitions, &suite->warm_up)) {
+  if (!file.Integer("repetitions", Presence::kOptional, 1, kMostRepetitions, &suite->repetitions) ||
+      !file.Integer("warm_up", Presence::kOptional, 0, kMostRepetitions, &suite->warm_up)) {
     return false;
   }
   if (!file.Has("order")) return true;
-  return file.Object("order", kRequired, &order) && order.HasOnly({"shuffled", "seed"}) &&
-         order.Flag("shuffled", kOptional, &suite->shuffled) &&
-         order.Integer("seed", kOptional, 0, kLargest, &suite->order_seed);
+  return file.Object("order", Presence::kRequired, &order) && order.HasOnly({"shuffled", "seed"}) &&
+         order.Flag("shuffled", Presence::kOptional, &suite->shuffled) &&
+         order.Integer("seed", Presence::kOptional, 0, kLargest, &suite->order_seed);
 }
 
 /// What only making a problem shows: bad data, too few points, terms that do not fit.
@@ -253,9 +260,9 @@ bool ReadBenchSuite(const std::string& path, BenchSuite* suite, std::string* err
   if (!file.HasOnly({"format", "name", "summary", "plugins", "problems", "terms", "solvers",
                      "exclude", "targets", "budgets", "rule", "seeds", "repetitions", "warm_up",
                      "order", "keep_iterates"}) ||
-      !file.Word("format", kRequired, {"batten.suite/1"}, &format) ||
-      !file.Text("name", kRequired, &read.name) ||
-      !file.Text("summary", kOptional, &read.summary) || !ReadPlugins(file, path) ||
+      !file.Word("format", Presence::kRequired, {"batten.suite/1"}, &format) ||
+      !file.Text("name", Presence::kRequired, &read.name) ||
+      !file.Text("summary", Presence::kOptional, &read.summary) || !ReadPlugins(file, path) ||
       !ReadProblems(file, &read, error) || !ReadTerms(file, &read) ||
       !ReadBenchSolvers(file, &read.solvers) || !ReadExclusions(file, &read) ||
       !ReadTargets(file, &read) || !ReadBudgets(file, &read) || !ReadRule(file, &read) ||

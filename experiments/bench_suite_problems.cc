@@ -9,8 +9,7 @@
 namespace batten {
 namespace {
 
-constexpr auto kRequired = StrictObject::Presence::kRequired;
-constexpr auto kOptional = StrictObject::Presence::kOptional;
+using Presence = StrictObject::Presence;
 
 /// What a problem's grid holds; an empty list leaves the base's value.
 struct Grid {
@@ -23,11 +22,11 @@ bool ReadKinds(const StrictObject& object, std::vector<std::string>* kinds) {
   const std::vector<std::string> words = {"fixed", "free", "projected"};
   if (!object.IsList("parameter_kind")) {
     std::string kind;
-    if (!object.Word("parameter_kind", kOptional, words, &kind)) return false;
+    if (!object.Word("parameter_kind", Presence::kOptional, words, &kind)) return false;
     if (!kind.empty()) *kinds = {kind};
     return true;
   }
-  if (!object.Texts("parameter_kind", kRequired, kinds)) return false;
+  if (!object.Texts("parameter_kind", Presence::kRequired, kinds)) return false;
   for (std::size_t i = 0; i < kinds->size(); ++i) {
     if (std::find(words.begin(), words.end(), (*kinds)[i]) == words.end()) {
       return object.Complain("parameter_kind/" + std::to_string(i),
@@ -45,23 +44,24 @@ bool ReadName(const StrictObject& object, StrictObject::Presence presence, std::
 }
 
 bool ReadGrid(const StrictObject& object, Grid* grid) {
-  return object.Integers("control_points", kOptional, 1, kMaxControlPoints,
+  return object.Integers("control_points", Presence::kOptional, 1, kMaxControlPoints,
                          &grid->control_points) &&
-         object.Integers("degree", kOptional, 1, kMaxDegree, &grid->degrees) &&
+         object.Integers("degree", Presence::kOptional, 1, kMaxDegree, &grid->degrees) &&
          ReadKinds(object, &grid->kinds);
 }
 
 /// What may be said of any problem beside its grid.
 bool ReadDetails(const StrictObject& object, FitSpec* spec) {
-  return object.Word("start", kOptional, {"data", "centroid", "circle", "ellipse"}, &spec->start) &&
-         object.Flag("hold_ends", kOptional, &spec->hold_ends) &&
-         object.Flag("keep_order", kOptional, &spec->keep_order);
+  return object.Word("start", Presence::kOptional, {"data", "centroid", "circle", "ellipse"},
+                     &spec->start) &&
+         object.Flag("hold_ends", Presence::kOptional, &spec->hold_ends) &&
+         object.Flag("keep_order", Presence::kOptional, &spec->keep_order);
 }
 
 bool ReadParameters(const StrictObject& object, FitSpec* spec) {
   std::string rule = spec->parameters.has_value() ? ToString(*spec->parameters) : "given";
-  if (!object.Word("parameters", kOptional, {"uniform", "chord_length", "centripetal", "given"},
-                   &rule)) {
+  if (!object.Word("parameters", Presence::kOptional,
+                   {"uniform", "chord_length", "centripetal", "given"}, &rule)) {
     return false;
   }
   Parameterization read = Parameterization::kUniform;
@@ -73,8 +73,9 @@ bool ReadParameters(const StrictObject& object, FitSpec* spec) {
 bool ReadDataProblem(const StrictObject& object, const std::string& suite_path,
                      CatalogueEntry* entry) {
   std::string file;
-  if (!object.Text("data", kRequired, &file) || !ReadName(object, kRequired, &entry->name) ||
-      !object.Flag("closed", kOptional, &entry->spec.closed)) {
+  if (!object.Text("data", Presence::kRequired, &file) ||
+      !ReadName(object, Presence::kRequired, &entry->name) ||
+      !object.Flag("closed", Presence::kOptional, &entry->spec.closed)) {
     return false;
   }
   entry->data_path = FindDataFile(file, suite_path);
@@ -90,10 +91,10 @@ bool ReadDataProblem(const StrictObject& object, const std::string& suite_path,
 bool ReadSynthetic(const StrictObject& object, CatalogueEntry* entry, SyntheticTruth* truth) {
   constexpr int kMostPoints = 10'000'000;
   constexpr double kMostNoise = 1.0;
-  if (!object.Word("synthetic", kRequired, {"star", "wave"}, &truth->shape) ||
-      !ReadName(object, kRequired, &entry->name) ||
-      !object.Integer("points", kRequired, 2, kMostPoints, &truth->points) ||
-      !object.Number("noise", kOptional, 0.0, kMostNoise, &truth->noise)) {
+  if (!object.Word("synthetic", Presence::kRequired, {"star", "wave"}, &truth->shape) ||
+      !ReadName(object, Presence::kRequired, &entry->name) ||
+      !object.Integer("points", Presence::kRequired, 2, kMostPoints, &truth->points) ||
+      !object.Number("noise", Presence::kOptional, 0.0, kMostNoise, &truth->noise)) {
     return false;
   }
   entry->spec.closed = truth->shape == "star";
@@ -126,9 +127,9 @@ bool ReadBase(const StrictObject& object, const std::string& suite_path, BenchPr
     return ReadSynthetic(object, &base->entry, &*base->truth);
   }
   std::string name;
-  if (!object.Text("problem", kRequired, &name)) return false;
+  if (!object.Text("problem", Presence::kRequired, &name)) return false;
   if (!FindProblem(name, &base->entry, error)) return object.Complain("problem", *error);
-  return ReadName(object, kOptional, &base->entry.name);
+  return ReadName(object, Presence::kOptional, &base->entry.name);
 }
 
 /// One problem per point of the grid; what stands in a list of several is part of its label.

@@ -9,8 +9,7 @@
 namespace batten {
 namespace {
 
-constexpr auto kRequired = StrictObject::Presence::kRequired;
-constexpr auto kOptional = StrictObject::Presence::kOptional;
+using Presence = StrictObject::Presence;
 
 /// Values of one option: a number or a word, or a list of them.
 bool ReadOptionValues(const StrictObject& options, const std::string& key,
@@ -18,16 +17,18 @@ bool ReadOptionValues(const StrictObject& options, const std::string& key,
   if (!options.IsList(key)) {
     double number = 0.0;
     std::string word;
-    if (options.IsNumber(key) && options.Number(key, kRequired, -HUGE_VAL, HUGE_VAL, &number)) {
+    if (options.IsNumber(key) &&
+        options.Number(key, Presence::kRequired, -HUGE_VAL, HUGE_VAL, &number)) {
       *values = {NumberText(number)};
       return true;
     }
-    if (!options.Text(key, kRequired, &word)) return false;
+    if (!options.Text(key, Presence::kRequired, &word)) return false;
     *values = {word};
     return true;
   }
   std::vector<StrictObject> entries;
-  if (!options.Entries(key, kRequired, "a list of numbers or words", &entries)) return false;
+  if (!options.Entries(key, Presence::kRequired, "a list of numbers or words", &entries))
+    return false;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     std::string text;
     double number = 0.0;
@@ -87,8 +88,10 @@ bool ReadSolverGrid(const StrictObject& entry, std::vector<NameSpec>* solvers) {
   std::string text, why;
   StrictObject options;
   std::vector<std::string> wrapped;
-  if (!entry.HasOnly({"solver", "options", "wraps"}) || !entry.Text("solver", kRequired, &text) ||
-      !entry.Object("options", kOptional, &options) || !entry.Texts("wraps", kOptional, &wrapped)) {
+  if (!entry.HasOnly({"solver", "options", "wraps"}) ||
+      !entry.Text("solver", Presence::kRequired, &text) ||
+      !entry.Object("options", Presence::kOptional, &options) ||
+      !entry.Texts("wraps", Presence::kOptional, &wrapped)) {
     return false;
   }
   if (!ParseNameSpec(text, &base, &why)) return entry.Complain("solver", why);
@@ -133,7 +136,7 @@ bool ReadSolverEntry(const StrictObject& entry, std::vector<NameSpec>* solvers) 
 
 bool ReadBenchSolvers(const StrictObject& file, std::vector<NameSpec>* solvers) {
   std::vector<StrictObject> entries;
-  if (!file.Entries("solvers", kRequired, "a list of solvers", &entries)) return false;
+  if (!file.Entries("solvers", Presence::kRequired, "a list of solvers", &entries)) return false;
   std::set<std::string> identities;
   for (const StrictObject& entry : entries) {
     std::vector<NameSpec> read;

@@ -100,7 +100,7 @@ CostTable RowsOfKind(const BenchResults& results, const CostTable& all,
 }
 
 /// For people: numbers that are not whole to four digits.
-CsvTable Rounded(const CsvTable& table) {
+CsvTable RoundedTable(const CsvTable& table) {
   CsvTable rounded = table;
   for (std::size_t row = 0; row < table.num_rows(); ++row) {
     for (const std::string& column : table.columns()) {
@@ -114,7 +114,7 @@ CsvTable Rounded(const CsvTable& table) {
 
 bool Write(const CsvTable& table, const std::string& stem, const std::string& caption,
            FileBatch* batch, std::string* error) {
-  const CsvTable rounded = Rounded(table);
+  const CsvTable rounded = RoundedTable(table);
   return batch->Write(stem + ".csv", table.ToCsv(), error) != nullptr &&
          batch->Write(stem + ".md", TableMarkdown(rounded), error) != nullptr &&
          batch->Write(stem + ".tex", TableLatex(rounded, caption), error) != nullptr;

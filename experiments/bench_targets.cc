@@ -11,9 +11,6 @@
 namespace batten {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// iteration, four counts, projections, seconds, cpu_seconds, energy: docs/formats.md.
 constexpr int kNumFields = 9;
 
@@ -22,7 +19,7 @@ bool ReadFields(const std::string& line, std::array<double, kNumFields>* fields)
   for (double& field : *fields) {
     char* end = nullptr;
     field = std::strtod(at, &end);
-    if (end == at) field = kNan;  // empty: no finite number
+    if (end == at) field = NAN;  // empty: no finite number
     if (*end != ',') return false;
     at = end + 1;
   }
@@ -58,13 +55,13 @@ double TargetEnergy(const BenchInstance& instance, const BenchTarget& target,
   const double fall = instance.start_energy - minimum_energy;
   // Energies carry rounding; 1000 of them are left to see.
   constexpr double kNoise = 1000 * std::numeric_limits<double>::epsilon();
-  if (!(target.gap * fall > kNoise * std::abs(minimum_energy))) return kNan;
+  if (!(target.gap * fall > kNoise * std::abs(minimum_energy))) return NAN;
   return minimum_energy + target.gap * fall;
 }
 
 std::array<double, 3> CostsTo(double energy, const std::vector<ShortTrace>& traces,
                               const std::vector<bool>& is_timed, double unit_seconds) {
-  if (traces.empty() || std::isnan(energy)) return {kInfinity, kInfinity, kInfinity};
+  if (traces.empty() || std::isnan(energy)) return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
   // The clock's own step: no cost is 0.
   constexpr double kTick = 1e-9;
   std::vector<double> evaluations;
@@ -72,14 +69,14 @@ std::array<double, 3> CostsTo(double energy, const std::vector<ShortTrace>& trac
   for (std::size_t k = 0; k < traces.size(); ++k) {
     const std::size_t row = FirstRow(traces[k], energy);
     const bool reached = row < traces[k].energies.size();
-    evaluations.push_back(reached ? std::max(1.0, traces[k].evaluations[row]) : kInfinity);
+    evaluations.push_back(reached ? std::max(1.0, traces[k].evaluations[row]) : HUGE_VAL);
     if (!is_timed[k]) continue;
-    seconds.push_back(reached ? std::max(kTick, traces[k].seconds[row]) : kInfinity);
+    seconds.push_back(reached ? std::max(kTick, traces[k].seconds[row]) : HUGE_VAL);
   }
   const double calls = Median(evaluations);
-  const double unknown = std::isinf(calls) ? kInfinity : kNan;  // a failure needs no clock
+  const double unknown = std::isinf(calls) ? HUGE_VAL : NAN;  // a failure needs no clock
   const double time = seconds.empty() ? unknown : Median(seconds);
-  return {calls, std::isinf(time) ? kInfinity : time / unit_seconds, time};
+  return {calls, std::isinf(time) ? HUGE_VAL : time / unit_seconds, time};
 }
 
 }  // namespace batten

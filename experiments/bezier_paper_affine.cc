@@ -11,8 +11,8 @@
 namespace batten {
 namespace {
 
-constexpr int kCurves = 30;
-constexpr int kDegree = 16;
+constexpr int kNumMovedCurves = 30;
+constexpr int kMovedDegree = 16;
 
 struct NamedMap {
   std::string kind;
@@ -48,10 +48,10 @@ bool RunAffine(const ExperimentRun& run, ExperimentTables* tables, std::string* 
   const auto halved = [&half](const BezierCurve& curve, SubdivisionMode mode) {
     return RunRule(half.get(), curve, PaperSubdivision(mode), 1).result;
   };
-  for (int k = 0; k < kCurves; ++k) {
+  for (int k = 0; k < kNumMovedCurves; ++k) {
     if (InterruptRequested()) return true;
-    if (run.progress) run.progress(static_cast<double>(k) / kCurves, "maps");
-    const BezierCurve curve = FamilyCurve("walk", kDegree, k);
+    if (run.progress) run.progress(static_cast<double>(k) / kNumMovedCurves, "maps");
+    const BezierCurve curve = FamilyCurve("walk", kMovedDegree, k);
     const int pieces = halved(curve, SubdivisionMode::kAdaptive).num_pieces();
     const int rounds = halved(curve, SubdivisionMode::kUniform).rounds;
     for (const NamedMap& map : Maps()) {

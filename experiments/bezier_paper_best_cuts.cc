@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kRounds = 6;
 constexpr int kBins = 20;
-constexpr int kCurves = 50;
-constexpr int kDegrees[] = {12, 20};
+constexpr int kNumCutCurves = 50;
+constexpr int kCutDegrees[] = {12, 20};
 constexpr int kPapersRounds = 3;
 using Histogram = std::array<std::array<int, kBins>, kRounds>;
 
@@ -46,11 +46,11 @@ bool RunBestCuts(const ExperimentRun& run, ExperimentTables* tables, std::string
     for (const std::string& family : CurveFamilies()) {
       if (run.progress) run.progress(done++ / cells, family);
       Histogram histogram{};
-      for (const int degree : kDegrees) {
-        for (int k = 0; k < kCurves; ++k) {
+      for (const int degree : kCutDegrees) {
+        for (int k = 0; k < kNumCutCurves; ++k) {
           if (InterruptRequested()) return true;
           // Kinks of the hull take a hundred times as long to search.
-          if (measure == CutMeasure::kHullArea && k >= kCurves / 10) break;
+          if (measure == CutMeasure::kHullArea && k >= kNumCutCurves / 10) break;
           CountBestCuts(FamilyCurve(family, degree, k), measure, &histogram);
         }
       }

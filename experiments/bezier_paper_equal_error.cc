@@ -13,8 +13,8 @@
 namespace batten {
 namespace {
 
-constexpr int kDegrees[] = {3, 8, 16, 25};
-constexpr int kCurves = 20;
+constexpr int kEqualErrorDegrees[] = {3, 8, 16, 25};
+constexpr int kNumEqualErrorCurves = 20;
 constexpr double kWanted = 1e-4;
 
 struct AtError {
@@ -56,14 +56,14 @@ bool RunEqualError(const ExperimentRun& run, ExperimentTables* tables, std::stri
                 "seconds_ratio", "mean_error"});
   const std::vector<std::string> names = ComparedRules(SubdivisionSettings().back());
   double done = 0.0;
-  const double cells = std::size(kDegrees) * static_cast<double>(CurveFamilies().size());
+  const double cells = std::size(kEqualErrorDegrees) * static_cast<double>(CurveFamilies().size());
   for (const std::string& family : CurveFamilies()) {
-    for (const int degree : kDegrees) {
+    for (const int degree : kEqualErrorDegrees) {
       if (InterruptRequested()) return true;
       if (run.progress) run.progress(done++ / cells, family + " degree " + std::to_string(degree));
       std::vector<std::vector<double>> pieces(names.size()), seconds(names.size());
       std::vector<double> errors(names.size());
-      for (int k = 0; k < kCurves; ++k) {
+      for (int k = 0; k < kNumEqualErrorCurves; ++k) {
         const BezierCurve curve = FamilyCurve(family, degree, k);
         AtError half;
         for (std::size_t r = 0; r < names.size(); ++r) {
@@ -72,13 +72,14 @@ bool RunEqualError(const ExperimentRun& run, ExperimentTables* tables, std::stri
           pieces[r].push_back(static_cast<double>(found.run.result.num_pieces()) /
                               half.run.result.num_pieces());
           seconds[r].push_back(found.run.seconds / half.run.seconds);
-          errors[r] += found.error / kCurves;
+          errors[r] += found.error / kNumEqualErrorCurves;
         }
       }
       for (std::size_t r = 0; r < names.size(); ++r) {
         const MedianWithInterval ratio = MedianOf(pieces[r]);
-        table.AddRow({family, std::to_string(degree), names[r], std::to_string(kCurves),
-                      NumberText(ratio.median), NumberText(ratio.low), NumberText(ratio.high),
+        table.AddRow({family, std::to_string(degree), names[r],
+                      std::to_string(kNumEqualErrorCurves), NumberText(ratio.median),
+                      NumberText(ratio.low), NumberText(ratio.high),
                       NumberText(MedianOf(seconds[r]).median), NumberText(errors[r])});
       }
     }

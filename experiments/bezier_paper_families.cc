@@ -12,7 +12,7 @@
 namespace batten {
 namespace {
 
-constexpr int kCurves = 1000;
+constexpr int kNumFamilyCurves = 1000;
 // Certifying an error takes longer than subdividing.
 constexpr int kCertified = 20;
 constexpr int kLowDegrees[] = {3, 6};
@@ -34,7 +34,7 @@ bool RunFamilies(const ExperimentRun& run, ExperimentTables* tables, std::string
       if (InterruptRequested()) return true;
       if (run.progress) run.progress(done++ / cells, family + " degree " + std::to_string(degree));
       std::vector<BezierCurve> curves;
-      for (int k = 0; k < kCurves; ++k) curves.push_back(FamilyCurve(family, degree, k));
+      for (int k = 0; k < kNumFamilyCurves; ++k) curves.push_back(FamilyCurve(family, degree, k));
       CompareRules(curves, {family, std::to_string(degree)}, run.repetitions, kCertified, &table);
     }
   }

@@ -18,8 +18,8 @@
 namespace batten {
 namespace {
 
-constexpr int kDegrees[] = {4, 8, 12, 20};
-constexpr int kCurves = 10;
+constexpr int kMinimaDegrees[] = {4, 8, 12, 20};
+constexpr int kNumMinimaCurves = 10;
 constexpr const char* kSolvers[] = {"lbfgs", "ceres_lbfgs", "ceres_lm"};
 
 /// Where a method ended, and what it took.
@@ -143,13 +143,14 @@ bool RunMinima(const ExperimentRun& run, ExperimentTables* tables, std::string* 
       CsvTable({"measure", "family", "degree", "curve", "minima", "method", "u", "found",
                 "value_over_least", "evaluations", "seconds"});
   double done = 0.0;
-  const double cells = 2.0 * std::size(kDegrees) * static_cast<double>(CurveFamilies().size());
+  const double cells =
+      2.0 * std::size(kMinimaDegrees) * static_cast<double>(CurveFamilies().size());
   for (const CutMeasure measure : {CutMeasure::kFlatness, CutMeasure::kHullArea}) {
     for (const std::string& family : CurveFamilies()) {
-      for (const int degree : kDegrees) {
+      for (const int degree : kMinimaDegrees) {
         if (InterruptRequested()) return true;
         if (run.progress) run.progress(done++ / cells, family + " " + ToString(measure));
-        for (int k = 0; k < kCurves; ++k) AddCurve(measure, family, degree, k, &table);
+        for (int k = 0; k < kNumMinimaCurves; ++k) AddCurve(measure, family, degree, k, &table);
       }
     }
   }
@@ -202,12 +203,12 @@ Judgement JudgeGrid(const ExperimentTables& tables) {
 }
 
 /// Rows of `method`, and how many of them are of each kind.
-struct KindCounts {
+struct FoundCounts {
   std::size_t all = 0;
   std::size_t least = 0;
   std::size_t none = 0;
 };
-KindCounts KindsOf(const CsvTable& rows) {
+FoundCounts CountsOf(const CsvTable& rows) {
   return {rows.num_rows(), rows.Where("found", "least").num_rows(),
           rows.Where("found", "none").num_rows()};
 }
@@ -217,7 +218,7 @@ Judgement JudgeExact(const ExperimentTables& tables) {
   bool all_least = true, all_low = true;
   for (const std::string& measure : tables.at("").Distinct("measure")) {
     const CsvTable rows = tables.at("").Where("measure", measure).Where("method", "exact");
-    const KindCounts kinds = KindsOf(rows);
+    const FoundCounts kinds = CountsOf(rows);
     if (kinds.all == 0) return Judgement();
     constexpr double kSameValue = 1.0 + 1e-6;
     double worst = 0.0;
@@ -240,8 +241,8 @@ Judgement JudgeDescent(const ExperimentTables& tables) {
   bool at_minima = true, at_least = true;
   for (const std::string& measure : tables.at("").Distinct("measure")) {
     for (const char* solver : kSolvers) {
-      const KindCounts kinds =
-          KindsOf(tables.at("").Where("measure", measure).Where("method", solver));
+      const FoundCounts kinds =
+          CountsOf(tables.at("").Where("measure", measure).Where("method", solver));
       if (kinds.all == 0) continue;
       at_minima &= kinds.none == 0;
       at_least &= kinds.least == kinds.all;

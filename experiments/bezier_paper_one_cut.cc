@@ -12,7 +12,7 @@ namespace batten {
 namespace {
 
 // The first curve of the walk of this degree: polygons of six legs can be told apart by eye.
-constexpr int kDegree = 6;
+constexpr int kOneCutDegree = 6;
 constexpr const char* kFamily = "walk";
 
 struct OneCut {
@@ -21,10 +21,10 @@ struct OneCut {
 };
 
 bool RunOneCut(const ExperimentRun& /*run*/, ExperimentTables* tables, std::string* /*error*/) {
-  const BezierCurve curve = FamilyCurve(kFamily, kDegree, 0);
+  const BezierCurve curve = FamilyCurve(kFamily, kOneCutDegree, 0);
   const double* points = curve.control_points().data();
-  CutValue flatness(CutMeasure::kFlatness, kDegree, 2, points);
-  CutValue hull(CutMeasure::kHullArea, kDegree, 2, points);
+  CutValue flatness(CutMeasure::kFlatness, kOneCutDegree, 2, points);
+  CutValue hull(CutMeasure::kHullArea, kOneCutDegree, 2, points);
   const OneCut cuts[] = {{"half", 0.5},
                          {"hull", GridMinimum(&hull).u},
                          {"hull exact", ExactMinimum(&hull).u},
@@ -108,7 +108,7 @@ PlotSeries CurveSeries(const BezierCurve& curve) {
 
 std::vector<PlotPanel> OneCutPanels(const ExperimentTables& tables) {
   constexpr int kFirstColor = 0, kSecondColor = 1;
-  const BezierCurve curve = FamilyCurve(kFamily, kDegree, 0);
+  const BezierCurve curve = FamilyCurve(kFamily, kOneCutDegree, 0);
   std::vector<PlotPanel> panels;
   for (const char* rule : {"half", "hull", "flatness"}) {
     const CsvTable row = tables.at("").Where("rule", rule);
@@ -116,7 +116,7 @@ std::vector<PlotPanel> OneCutPanels(const ExperimentTables& tables) {
     const double u = row.Number(0, "u");
     if (!(u > 0.0 && u < 1.0)) continue;  // an edited table
     Points first = curve.control_points(), second = first;
-    CutBezier(kDegree, 2, u, curve.control_points().data(), first.data(), second.data());
+    CutBezier(kOneCutDegree, 2, u, curve.control_points().data(), first.data(), second.data());
     PlotPanel panel;
     panel.equal_scale = true;
     panel.title = std::string(rule) + ", cut at " + row.Text(0, "u");

@@ -13,8 +13,8 @@ namespace batten {
 namespace {
 
 constexpr int kMostRounds = 8;
-constexpr int kCurves = 40;
-constexpr int kDegrees[] = {12, 16, 20, 25};
+constexpr int kNumRoundCurves = 40;
+constexpr int kRoundDegrees[] = {12, 16, 20, 25};
 constexpr const char* kRules[] = {"flatness", "hull"};
 
 bool RunRounds(const ExperimentRun& run, ExperimentTables* tables, std::string* /*error*/) {
@@ -29,8 +29,8 @@ bool RunRounds(const ExperimentRun& run, ExperimentTables* tables, std::string* 
       if (run.progress) run.progress(done++ / cells, family + " " + rule);
       std::vector<std::vector<double>> seconds(kMostRounds + 1), pieces(kMostRounds + 1);
       std::vector<double> rounds(kMostRounds + 1);
-      for (const int degree : kDegrees) {
-        for (int k = 0; k < kCurves; ++k) {
+      for (const int degree : kRoundDegrees) {
+        for (int k = 0; k < kNumRoundCurves; ++k) {
           const BezierCurve curve = FamilyCurve(family, degree, k);
           RuleRun without;
           for (int n = 0; n <= kMostRounds; ++n) {
@@ -50,7 +50,7 @@ bool RunRounds(const ExperimentRun& run, ExperimentTables* tables, std::string* 
         table.AddRow({family, rule, std::to_string(n), NumberText(ratio.median),
                       NumberText(ratio.low), NumberText(ratio.high),
                       NumberText(MedianOf(pieces[n]).median),
-                      NumberText(rounds[n] / (kCurves * std::size(kDegrees)))});
+                      NumberText(rounds[n] / (kNumRoundCurves * std::size(kRoundDegrees)))});
       }
     }
   }

@@ -12,7 +12,6 @@
 namespace batten {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr char kCholesky[] = "banded_cholesky";
 
 /// Times of one solver over the repetitions.
@@ -143,7 +142,7 @@ void ProblemComparison::MeasureTrace(ComparisonRow* row) const {
   constexpr double kNoise = 1000 * std::numeric_limits<double>::epsilon();
   const double minimum = direct_.minimum_energy();
   for (std::size_t k = 0; k < run.trace.size(); ++k) {
-    double excess = kNan;
+    double excess = NAN;
     if (k < run.iterates.size()) {
       excess = direct_.Excess(run.iterates[k].x);
     } else if (run.trace[k].energy - minimum > kNoise * run.trace[k].energy) {
@@ -233,7 +232,7 @@ bool Compare(const ComparisonSpec& spec, ComparisonResult* result, std::string* 
     comparison.AddTo(result);
     result->minimum_energies.push_back(comparison.minimum_energy());
   }
-  result->minimum_energies.resize(spec.problems.size(), kNan);
+  result->minimum_energies.resize(spec.problems.size(), NAN);
   result->interrupted = InterruptRequested();
   return true;
 }
@@ -242,7 +241,7 @@ void MeasureEnd(const Problem& problem, const DirectReference& direct, const Run
                 ComparisonRow* row) {
   if (const CurveFit* fit = problem.curve_fit()) row->parameter_kind = fit->spec().parameter_kind;
   row->unique_minimum = direct.unique();
-  row->gap = row->distance_to_direct = row->allowed_distance = kNan;
+  row->gap = row->distance_to_direct = row->allowed_distance = NAN;
   if (!row->run.skipped.empty()) return;
   row->gap = direct.Gap(row->run.x);
   row->distance_to_direct = direct.Distance(row->run.x);
@@ -263,7 +262,7 @@ std::string Disagreement(const DirectReference& direct, const RunSpec& spec,
 }
 
 double Median(std::vector<double> values) {
-  if (values.empty()) return kNan;
+  if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;

@@ -13,7 +13,6 @@ namespace batten {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -50,7 +49,7 @@ double DirectReference::SquaredProductFloor() const {
 }
 
 double DirectReference::minimum_energy() const {
-  if (!known_) return kNan;
+  if (!known_) return NAN;
   return objective_.curve_view()->rows().Evaluate(minimum_.data(), nullptr) *
          problem_->units().energy;
 }
@@ -61,13 +60,13 @@ Eigen::VectorXd DirectReference::FromMinimum(const Eigen::VectorXd& x) const {
 }
 
 double DirectReference::Gap(const Eigen::VectorXd& x) const {
-  if (!known_ || start_product_ == 0.0 || x.size() != problem_->num_variables()) return kNan;
+  if (!known_ || start_product_ == 0.0 || x.size() != problem_->num_variables()) return NAN;
   const Eigen::VectorXd v = FromMinimum(x);
   return objective_.curve_view()->rows().SquaredNormOfProduct(v.data()) / start_product_;
 }
 
 double DirectReference::Excess(const Eigen::VectorXd& x) const {
-  if (!known_) return kNan;
+  if (!known_) return NAN;
   const Eigen::VectorXd v = FromMinimum(x);
   Eigen::VectorXd product(v.size());
   objective_.curve_view()->normal_band().Multiply(v.data(), product.data());
@@ -87,7 +86,7 @@ double DirectReference::LargestRowProduct(const Eigen::VectorXd& v) const {
 }
 
 double DirectReference::Distance(const Eigen::VectorXd& x) const {
-  if (!known_ || x.size() != problem_->num_variables()) return kNan;
+  if (!known_ || x.size() != problem_->num_variables()) return NAN;
   const Eigen::VectorXd v = FromMinimum(x);
   if (!unique_) return LargestRowProduct(v) / scaled_size_;
   const Eigen::VectorXd moved = problem_->elimination().ExpandDirection(v);

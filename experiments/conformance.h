@@ -13,6 +13,10 @@ struct CheckVerdict {
   std::string detail;
 };
 
+inline CheckVerdict Failed(const std::string& detail) { return {false, detail}; }
+/// Behind a sentence: the fit in which it was found.
+inline std::string InText(const std::string& where) { return " (" + where + ")"; }
+
 /// One check of the conformance suite. It runs what is checked, which may crash, hang or eat the
 /// memory: the caller runs it in a process of its own with limits.
 struct ConformanceCheck {

@@ -17,10 +17,10 @@ struct Shape {
 };
 // The source says neither where its data are from nor in what unit they are, on which alpha : beta
 // depends: all are made 100 long, so that neighbours are some tenths to some units apart.
-constexpr double kSize = 100.0;
-constexpr Shape kShapes[] = {{"track", "curves3d/gps_hike_xyz_open.csv", 4, 361, kSize},
-                             {"airfoil", "airfoils/naca2412_open.csv", 1, 160, kSize},
-                             {"coast", "coasts/great_britain_10m.csv", 4, 400, kSize}};
+constexpr double kShapeSize = 100.0;
+constexpr Shape kShapes[] = {{"track", "curves3d/gps_hike_xyz_open.csv", 4, 361, kShapeSize},
+                             {"airfoil", "airfoils/naca2412_open.csv", 1, 160, kShapeSize},
+                             {"coast", "coasts/great_britain_10m.csv", 4, 400, kShapeSize}};
 
 /// Points of a file that are different from the ones before them, scaled.
 bool ReadShape(const Shape& shape, Points* points, std::string* error) {
@@ -107,7 +107,7 @@ bool All(const std::vector<double>& values, double low, double high) {
 std::vector<double> Moves(const ExperimentTables& tables, const std::string& setting) {
   const CsvTable rows = tables.at("").Where("setting", setting);
   std::vector<double> moves = rows.Numbers("largest_move");
-  for (double& move : moves) move /= kSize;
+  for (double& move : moves) move /= kShapeSize;
   return moves;
 }
 

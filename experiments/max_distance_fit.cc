@@ -14,7 +14,7 @@ namespace {
 
 // Roundings of a coordinate that lie between the search and the curve that is written: centring,
 // scaling and back, and the evaluation of a point.
-constexpr double kRoundings = 64.0;
+constexpr double kDistanceRoundings = 64.0;
 
 /// The data points that count, without those that repeat the one before, in the unit box.
 struct CountedPoints {
@@ -151,7 +151,7 @@ bool Measure(double bound, const Stopwatch& watch, double cpu_seconds, MaxDistan
 }  // namespace
 
 double LeastMaxDistance(double largest) {
-  return 4.0 * kRoundings * std::numeric_limits<double>::epsilon() * largest;
+  return 4.0 * kDistanceRoundings * std::numeric_limits<double>::epsilon() * largest;
 }
 
 bool FitWithinDistance(DataSet data, const FitSpec& spec, double bound, const SearchWatch& watch,
@@ -163,8 +163,8 @@ bool FitWithinDistance(DataSet data, const FitSpec& spec, double bound, const Se
   const auto parameters = Parameterize(spec.parameters.value_or(Parameterization::kChordLength),
                                        spec.closed, counted.points, error);
   if (!parameters.has_value()) return false;
-  const double rounding =
-      kRoundings * std::numeric_limits<double>::epsilon() * data.points.cwiseAbs().maxCoeff();
+  const double rounding = kDistanceRoundings * std::numeric_limits<double>::epsilon() *
+                          data.points.cwiseAbs().maxCoeff();
   bool went_on = true;
   const auto found = SearchFewControlPoints(spec.degree, spec.closed, counted.points, *parameters,
                                             (bound - rounding) * counted.scale,

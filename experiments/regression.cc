@@ -52,16 +52,17 @@ double Evaluations(const BenchRun& run) {
 }
 
 /// What pairs of runs are compared by.
-enum class Measure { kEvaluations, kSeconds, kEnergyInTime };
-constexpr std::array kMeasures = {Measure::kEvaluations, Measure::kSeconds, Measure::kEnergyInTime};
+enum class CostMeasure { kEvaluations, kSeconds, kEnergyInTime };
+constexpr std::array kMeasures = {CostMeasure::kEvaluations, CostMeasure::kSeconds,
+                                  CostMeasure::kEnergyInTime};
 
-const char* ToString(Measure measure) {
+const char* ToString(CostMeasure measure) {
   switch (measure) {
-    case Measure::kEvaluations:
+    case CostMeasure::kEvaluations:
       return "evaluations";
-    case Measure::kSeconds:
+    case CostMeasure::kSeconds:
       return "seconds";
-    case Measure::kEnergyInTime:
+    case CostMeasure::kEnergyInTime:
       break;
   }
   return "E at the time limit";
@@ -124,7 +125,7 @@ class Finder {
   void CompareCosts() {
     struct Test {
       std::string solver;
-      Measure measure = Measure::kEvaluations;
+      CostMeasure measure = CostMeasure::kEvaluations;
       SignedRank rank;
       double ratio = 1.0;
     };
@@ -135,12 +136,12 @@ class Finder {
         solvers.push_back(key[1]);
       }
     }
-    for (const Measure measure : kMeasures) {
+    for (const CostMeasure measure : kMeasures) {
       for (const std::string& solver : solvers) {
         const std::vector<double> logs = LogRatios(solver, measure);
         if (!logs.empty()) {
           tests.push_back({solver, measure, TestSignedRank(logs), std::exp(Median(logs))});
-        } else if (measure == Measure::kEvaluations && Ran(solver)) {
+        } else if (measure == CostMeasure::kEvaluations && Ran(solver)) {
           report_->differences.push_back(
               solver +
               ": no run reaches what is asked, or a target, both times: costs not compared");
@@ -154,7 +155,7 @@ class Finder {
       const Test& test = tests[k];
       const char* const cost = ToString(test.measure);
       const double allowed =
-          test.measure == Measure::kEnergyInTime ? rule_.energy_rounding : rule_.slowdown;
+          test.measure == CostMeasure::kEnergyInTime ? rule_.energy_rounding : rule_.slowdown;
       const bool worse = corrected[k] < rule_.significance && test.ratio > 1.0 + allowed;
       report_->tests.AddRow({Cleaned(test.solver), cost, std::to_string(test.rank.count),
                              NumberText(test.ratio), NumberText(test.rank.positive_sum),
@@ -162,7 +163,7 @@ class Finder {
                              worse ? "yes" : "no"});
       if (!worse) continue;
       const std::string who = test.solver == "all" ? "all solvers" : test.solver;
-      const bool of_energy = test.measure == Measure::kEnergyInTime;
+      const bool of_energy = test.measure == CostMeasure::kEnergyInTime;
       report_->regressions.push_back(
           who + (of_energy ? " end at " : " need ") + ShortNumber(test.ratio, of_energy ? 7 : 3) +
           " times the " + cost + " (median of " + std::to_string(test.rank.count) +
@@ -204,12 +205,12 @@ class Finder {
   }
 
   /// Logarithms of now over before, of the pairs that can be compared by this.
-  std::vector<double> LogRatios(const std::string& solver, Measure measure) const {
+  std::vector<double> LogRatios(const std::string& solver, CostMeasure measure) const {
     std::vector<double> logs;
     for (const auto& [key, pair] : pairs_) {
       if (solver != "all" && key[1] != solver) continue;
       const double ratio =
-          measure == Measure::kEnergyInTime ? EnergyRatio(pair) : CostRatio(pair, measure);
+          measure == CostMeasure::kEnergyInTime ? EnergyRatio(pair) : CostRatio(pair, measure);
       if (std::isfinite(ratio) && ratio > 0.0) logs.push_back(std::log(ratio));
     }
     return logs;
@@ -223,8 +224,8 @@ class Finder {
 
   /// Of whole runs that reach what is asked both times; of others to the strictest gap in their own
   /// basin that both reach; NaN where there is none.
-  double CostRatio(const Pair& pair, Measure measure) const {
-    const bool of_time = measure == Measure::kSeconds;
+  double CostRatio(const Pair& pair, CostMeasure measure) const {
+    const bool of_time = measure == CostMeasure::kSeconds;
     if (Reached(*pair.before) && Reached(*pair.now)) {
       return of_time ? Median(pair.now->seconds) / Median(pair.before->seconds)
                      : Evaluations(*pair.now) / Evaluations(*pair.before);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -21,14 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// The instances that rows belong to, each with the E that its runs are held against.
 struct Group {
   OrderedJson names;                   // problem, terms, seeds of data and start
-  double direct = kInfinity;           // lowest E* of a direct answer
-  double best = kInfinity;             // of bench: E of the best basin
-  double lowest = kInfinity;           // lowest E that a run has seen
+  double direct = HUGE_VAL;            // lowest E* of a direct answer
+  double best = HUGE_VAL;              // of bench: E of the best basin
+  double lowest = HUGE_VAL;            // lowest E that a run has seen
   double unit_seconds = std::nan("");  // of bench: of one evaluation of E
 
   bool is_direct() const { return std::isfinite(direct); }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "cost_functions/options.h"
@@ -13,7 +12,6 @@
 namespace batten {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 std::string Place(const std::string& path, long number) {
   return path + ":" + std::to_string(number) + ": ";
 }
@@ -35,7 +33,7 @@ class TraceReader {
   bool TakeHeader(std::vector<std::string> names, std::string* wrong);
   /// NaN where there is no such column.
   double At(int column) const {
-    return places_[column] < 0 ? kNan : numbers_[static_cast<std::size_t>(places_[column])];
+    return places_[column] < 0 ? NAN : numbers_[static_cast<std::size_t>(places_[column])];
   }
 
   std::vector<std::string> names_;
@@ -63,7 +61,7 @@ bool TraceReader::Take(std::string_view line, std::string* wrong) {
              " fields; allowed: " + std::to_string(names_.size()) + ", as in the header";
     return false;
   }
-  numbers_.assign(fields.size(), kNan);
+  numbers_.assign(fields.size(), NAN);
   for (std::size_t k = 0; k < fields.size(); ++k) {
     if (fields[k].empty() || ParseNumber(fields[k], &numbers_[k])) continue;
     *wrong = "found \"" + fields[k].substr(0, 40) + "\"; allowed: a number";

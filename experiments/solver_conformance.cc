@@ -18,8 +18,6 @@ namespace {
 constexpr int kNever = StoppingContext::kNever;
 constexpr int kFewIterations = 20;
 
-CheckVerdict Failed(const std::string& detail) { return {false, detail}; }
-
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.size() == b.size() &&
          (a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0);
@@ -58,8 +56,6 @@ std::vector<Supported> SupportedOf(const std::string& solver, std::vector<Exampl
 std::string UsualName(const std::string& registered) {
   return SolverRegistry::Global().UsualName(registered);
 }
-
-std::string InText(const std::string& where) { return " (" + where + ")"; }
 
 CheckVerdict ChecksDescription(const std::string& registered) {
   const SolverInfo& info = *SolverRegistry::Global().Find(registered);

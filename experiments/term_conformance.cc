@@ -22,10 +22,6 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kAround = 0.05;  // of the box's side: how far test points are from the start
 
-CheckVerdict Failed(const std::string& detail) { return {false, detail}; }
-
-std::string InText(const std::string& where) { return " (" + where + ")"; }
-
 TermInfo InfoOf(const std::string& name) { return TermRegistry::Global().Find(name)->Info(); }
 
 /// The term's defaults, each word of its own options, both ends of its numbers.
@@ -95,7 +91,7 @@ CheckVerdict ForEachProblem(const std::string& name, const std::vector<std::stri
   return {true, std::to_string(count) + " fits"};
 }
 
-CheckVerdict ChecksDescription(const std::string& name) {
+CheckVerdict ChecksTermDescription(const std::string& name) {
   const TermInfo info = InfoOf(name);
   if (info.summary.empty() || info.summary.find('\n') != std::string::npos) {
     return Failed("its summary is not one line");
@@ -110,7 +106,7 @@ CheckVerdict ChecksDescription(const std::string& name) {
   return {true, "options: " + std::to_string(info.options.size())};
 }
 
-CheckVerdict ChecksOptions(const std::string& name) {
+CheckVerdict ChecksTermOptions(const std::string& name) {
   NameSpec spec;
   const Term* term = nullptr;
   OptionValues values;
@@ -324,7 +320,7 @@ CheckVerdict ChecksNonFinite(const std::string& name) {
   });
 }
 
-CheckVerdict ChecksMemory(const std::string& name) {
+CheckVerdict ChecksTermMemory(const std::string& name) {
   int count = 0;
   for (const ExampleProblem& example : PageSizedProblems(name)) {
     const BlockFamily& family = FamilyOf(*example.problem);
@@ -377,8 +373,8 @@ std::vector<ConformanceCheck> TermChecks(const std::string& registered) {
   };
   return {
       row("description", "says what it is and where it is from, options with help",
-          &ChecksDescription),
-      row("options", "has an E at both ends and with each word of each option", &ChecksOptions),
+          &ChecksTermDescription),
+      row("options", "has an E at both ends and with each word of each option", &ChecksTermOptions),
       row("gradient", "g is that of E: the Taylor remainder falls with the square of the step",
           &ChecksGradient),
       row("Hessian", "H v is that of g, in the same way", &ChecksHessian),
@@ -389,7 +385,7 @@ std::vector<ConformanceCheck> TermChecks(const std::string& registered) {
           &ChecksRepeats),
       row("threads", "gives the same bits when three threads call it at once", &ChecksThreads),
       row("non-finite", "says so where there is no number", &ChecksNonFinite),
-      row("memory", "reads nothing behind the end of x", &ChecksMemory),
+      row("memory", "reads nothing behind the end of x", &ChecksTermMemory),
       row("fit", "lbfgs lowers E with it beside the distance", &ChecksFit)};
 }
 

@@ -15,20 +15,20 @@ namespace {
 // leaves a factor of eight for what the rows that are put in carry themselves.
 constexpr double kRoundings = 16.0 * std::numeric_limits<double>::epsilon();
 
-struct Sum {
-  double value = 0.0;
-  int num_parts = 0;
-  void Add(double part) {
-    value += part;
-    ++num_parts;
-  }
-};
-
 }  // namespace
 
 /// sum of entries = value, while rows are put into it.
 class Combination {
  public:
+  struct Sum {
+    double value = 0.0;
+    int num_parts = 0;
+    void Add(double part) {
+      value += part;
+      ++num_parts;
+    }
+  };
+
   void Add(int variable, double coefficient) {
     entries_[variable].Add(coefficient);
     largest_ = std::max(largest_, std::abs(coefficient));

@@ -18,8 +18,7 @@ std::string LowerCase(std::string text) {
 }
 
 bool IsWithinRange(const Eigen::Ref<const Eigen::VectorXd>& numbers) {
-  constexpr double kLargest = 1e150;  // as of files of text
-  return (numbers.array().abs() <= kLargest).all();
+  return (numbers.array().abs() <= kLargestNumber).all();
 }
 
 }  // namespace

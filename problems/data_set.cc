@@ -16,8 +16,6 @@
 namespace batten {
 namespace {
 
-constexpr double kLargest = 1e150;  // its square, and the sum of many of them, is still a double
-
 /// What stands in the file: it may be a picture.
 std::string QuotedField(std::string_view text) {
   constexpr std::size_t kLongest = 40;
@@ -36,8 +34,8 @@ bool ParseField(std::string_view field, double* value) {
   const char* const end = field.data() + field.size();
   const auto result = std::from_chars(field.data(), end, *value);
   // The rare rest, such as +1 and 1e-400, is left to the slower function.
-  if (result.ec == std::errc() && result.ptr == end) return std::abs(*value) <= kLargest;
-  return ParseNumber(std::string(field), value) && std::abs(*value) <= kLargest;
+  if (result.ec == std::errc() && result.ptr == end) return std::abs(*value) <= kLargestNumber;
+  return ParseNumber(std::string(field), value) && std::abs(*value) <= kLargestNumber;
 }
 
 class DataSetReader {

@@ -9,6 +9,10 @@
 
 namespace batten {
 
+/// Of the magnitude of a number in a data file: its square, and the sum of many of them, is still a
+/// double.
+inline constexpr double kLargestNumber = 1e150;
+
 /// Data points with what came along in the file.
 struct DataSet {
   std::string name;                           // file name without folder and extension

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "cost_functions/options.h"
+#include "problems/data_set.h"
 
 namespace batten {
 namespace {
 
 using Point = Eigen::RowVector2d;
 constexpr std::size_t kLongestQuote = 20;
-constexpr double kLargest = 1e150;  // as of data points: squares must not overflow
 constexpr char kAllowedCommands[] = "one of M, L, H, V, C, S, Q, T, Z in either case";
 
 /// Numbers and letters of path data, with a place for messages.
@@ -52,7 +52,7 @@ class PathScanner {
     const std::size_t from = text_[begin] == '+' ? begin + 1 : begin;
     double value = 0.0;
     if (!ParseNumber(std::string(text_.substr(from, end - from)), &value) ||
-        std::abs(value) > kLargest) {
+        std::abs(value) > kLargestNumber) {
       return std::nullopt;
     }
     place_ = end;

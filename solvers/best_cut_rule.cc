@@ -9,12 +9,12 @@ namespace {
 constexpr char kSource[] =
     "Ma, Lin, Shen, Optimal subdivision parameters for planar Bezier curves, 2016";
 constexpr int kPapersRounds = 3;
-constexpr int kMostRounds = 30;
+constexpr int kMostNarrowings = 30;
 
 }  // namespace
 
 std::vector<OptionInfo> BestCutRule::Options() {
-  return {OptionInfo::Integer("rounds", kPapersRounds, 0, kMostRounds,
+  return {OptionInfo::Integer("rounds", kPapersRounds, 0, kMostNarrowings,
                               "Pieces that stem from fewer cuts are cut at the best place, others "
                               "at 1/2; with choice=automatic the most rounds."),
           OptionInfo::Word("choice", "fixed", {"fixed", "automatic"},

@@ -10,7 +10,7 @@ namespace {
 
 /// Carried entries below this, relative to the largest of the triangle, are zero: they could only
 /// add squares that underflow.
-constexpr double kDecayed = 1e-140;
+constexpr double kDecayedEntry = 1e-140;
 
 }  // namespace
 
@@ -169,7 +169,7 @@ void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last)
   std::vector<double> row(1 + others);
   double* const border = row.data() + width_;
   for (int j = 0; j < num_swept_; ++j) {
-    if (carried.LargestInColumns(num_border_) <= kDecayed * scale) break;
+    if (carried.LargestInColumns(num_border_) <= kDecayedEntry * scale) break;
     double* const entry = triangle_.data() + static_cast<std::size_t>(j) * row_size_;
     std::copy_n(entry, width_, row.begin());
     std::fill_n(border, num_border_, 0.0);
@@ -178,7 +178,7 @@ void BandedQr::CarryAlong(const std::vector<double>& reordered, RowBuffer* last)
     std::copy_n(row.begin(), width_, entry);
     std::copy_n(border + num_border_, d, entry + width_);
     for (int b = 0; b < num_border_; ++b) {
-      border_.push_back(std::abs(border[b]) > kDecayed * scale ? border[b] : 0.0);
+      border_.push_back(std::abs(border[b]) > kDecayedEntry * scale ? border[b] : 0.0);
     }
     carried.ShiftColumns(width_);
     num_bordered_ = j + 1;

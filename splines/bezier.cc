@@ -8,8 +8,6 @@
 namespace batten {
 namespace {
 
-constexpr int kMostNumbers = (kMaxBezierDegree + 1) * kMaxDimension;
-
 // The step of de Casteljau's algorithm. From the nearer operand: with weights 1 - t and t, whose
 // sum is not 1 after rounding, 25 levels were off by up to 57 roundings after a few cuts; so, 5.
 struct Halve {
@@ -81,25 +79,20 @@ void CutByStep(int n, int dimension, const Step& step, const double* points, dou
   }
 }
 
-bool Fail(const std::string& sentence, std::string* error) {
-  if (error != nullptr) *error = sentence;
-  return false;
-}
-
 bool IsUsable(const Points& points, std::string* error) {
   if (points.rows() < 1 || points.rows() > kMaxBezierDegree + 1) {
-    return Fail("found " + std::to_string(points.rows()) + " control points; allowed: 1 to " +
-                    std::to_string(kMaxBezierDegree + 1),
-                error);
+    return FailWith("found " + std::to_string(points.rows()) + " control points; allowed: 1 to " +
+                        std::to_string(kMaxBezierDegree + 1),
+                    error);
   }
   if (points.cols() < 1 || points.cols() > kMaxDimension) {
-    return Fail("found control points of " + std::to_string(points.cols()) +
-                    " coordinates; allowed: 1 to " + std::to_string(kMaxDimension),
-                error);
+    return FailWith("found control points of " + std::to_string(points.cols()) +
+                        " coordinates; allowed: 1 to " + std::to_string(kMaxDimension),
+                    error);
   }
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     if (!points.row(i).allFinite()) {
-      return Fail("control point " + std::to_string(i) + " is not finite", error);
+      return FailWith("control point " + std::to_string(i) + " is not finite", error);
     }
   }
   return true;
@@ -116,7 +109,7 @@ void CutBezier(int degree, int dimension, double t, const double* points, double
 }
 
 void EvaluateBezier(int degree, int dimension, const double* points, double t, double* result) {
-  std::array<double, kMostNumbers> first, second;
+  std::array<double, kMaxBezierNumbers> first, second;
   CutBezier(degree, dimension, t, points, first.data(), second.data());
   std::copy(second.begin(), second.begin() + dimension, result);
 }

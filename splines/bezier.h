@@ -9,6 +9,13 @@
 namespace batten {
 
 inline constexpr int kMaxBezierDegree = 60;
+inline constexpr int kMaxBezierNumbers = (kMaxBezierDegree + 1) * kMaxDimension;
+
+/// Puts `sentence` into `*error`, unless that is null; always false.
+inline bool FailWith(const std::string& sentence, std::string* error) {
+  if (error != nullptr) *error = sentence;
+  return false;
+}
 
 /// Cuts the Bezier curve of n + 1 control points, d coordinates each, at the parameter t in [0, 1]
 /// by de Casteljau's algorithm (Farin, Curves and Surfaces for CAGD, sec. 4.2): `first` receives

@@ -9,11 +9,6 @@
 namespace batten {
 namespace {
 
-bool Fail(const std::string& sentence, std::string* error) {
-  if (error != nullptr) *error = sentence;
-  return false;
-}
-
 int HighestDegree(const std::vector<BezierSpan>& spans) {
   int degree = 0;
   for (const BezierSpan& span : spans) degree = std::max(degree, span.curve.degree());
@@ -36,26 +31,26 @@ void ShareEnd(Points* points, const Points& next) {
 }
 
 bool CanBeJoined(const std::vector<BezierSpan>& spans, bool periodic, std::string* error) {
-  if (spans.empty()) return Fail("found no Bezier curve; allowed: one or more", error);
+  if (spans.empty()) return FailWith("found no Bezier curve; allowed: one or more", error);
   const int degree = HighestDegree(spans);
   if (degree < 1 || degree > kMaxDegree) {
-    return Fail("found degree " + std::to_string(degree) + "; allowed in a B-spline curve: 1 to " +
-                    std::to_string(kMaxDegree),
-                error);
+    return FailWith("found degree " + std::to_string(degree) +
+                        "; allowed in a B-spline curve: 1 to " + std::to_string(kMaxDegree),
+                    error);
   }
   for (std::size_t i = 0; i < spans.size(); ++i) {
     const bool is_last = i + 1 == spans.size();
     const BezierSpan& next = spans[is_last ? 0 : i + 1];
     if (spans[i].curve.dimension() != next.curve.dimension()) {
-      return Fail("curve " + std::to_string(i) + " has another dimension than the next", error);
+      return FailWith("curve " + std::to_string(i) + " has another dimension than the next", error);
     }
     if (!(spans[i].begin < spans[i].end) || (!is_last && spans[i].end != next.begin)) {
-      return Fail("the interval of curve " + std::to_string(i) + " does not lead to the next",
-                  error);
+      return FailWith("the interval of curve " + std::to_string(i) + " does not lead to the next",
+                      error);
     }
     if ((!is_last || periodic) &&
         !Meet(spans[i].curve.control_points(), next.curve.control_points())) {
-      return Fail("curve " + std::to_string(i) + " does not end where the next begins", error);
+      return FailWith("curve " + std::to_string(i) + " does not end where the next begins", error);
     }
   }
   return true;

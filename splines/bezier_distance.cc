@@ -12,7 +12,6 @@ namespace batten {
 namespace {
 
 constexpr int kMostHalvings = 40;
-constexpr int kMostNumbers = (kMaxBezierDegree + 1) * kMaxDimension;
 
 /// Halves a curve depth first; what waits are the second halves, at most one per depth.
 class SegmentSearch {
@@ -53,7 +52,7 @@ class SegmentSearch {
       upper_ = std::max(upper_, farthest);
       return;
     }
-    std::array<double, kMostNumbers> first, second;
+    std::array<double, kMaxBezierNumbers> first, second;
     constexpr double kHalf = 0.5;
     CutBezier(n_, d_, kHalf, points, first.data(), second.data());
     const double middle = begin + kHalf * (end - begin);

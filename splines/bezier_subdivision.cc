@@ -22,11 +22,6 @@ std::string Explanation(const Subdivision& result, const SubdivisionOptions& opt
   return text + (text.empty() ? "" : "; ") + "the tolerance is below rounding and was raised to it";
 }
 
-bool Fail(const std::string& sentence, std::string* error) {
-  if (error != nullptr) *error = sentence;
-  return false;
-}
-
 }  // namespace
 
 bool Subdivide(const BezierCurve& curve, const CutChoice& rule, const SubdivisionOptions& options,
@@ -34,9 +29,9 @@ bool Subdivide(const BezierCurve& curve, const CutChoice& rule, const Subdivisio
   *result = Subdivision();
   if (!options.IsValid(error)) return false;
   if (options.stop == StopMeasure::kHullArea && curve.dimension() != 2) {
-    return Fail("a stop by hull area needs a planar curve; found " +
-                    std::to_string(curve.dimension()) + " coordinates, use polygon",
-                error);
+    return FailWith("a stop by hull area needs a planar curve; found " +
+                        std::to_string(curve.dimension()) + " coordinates, use polygon",
+                    error);
   }
   const double unit = UnitOf(curve.control_points());
   const BezierCurve scaled = *BezierCurve::Make(curve.control_points() / unit, nullptr);

@@ -7,7 +7,7 @@
 namespace batten {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon();
 
 /// C, C' and C'' at t, and Q - C.
 struct Jet {
@@ -78,7 +78,7 @@ CurveDistance Measure(const BezierStretch& stretch, const double* point, double 
   at.slope = -Dot(jet->to_point, jet->first, d);
   at.curvature = Dot(jet->first, jet->first, d) - Dot(jet->to_point, jet->second, d);
   // About p roundings of the size of the coordinates.
-  const double off = (p + 4) * kEpsilon * size;
+  const double off = (p + 4) * kUnitRoundoff * size;
   at.rounding = off * (2.0 * std::sqrt(d * at.squared_distance) + d * off);
   return at;
 }
@@ -100,7 +100,7 @@ CurveDistance FindFoot(const BezierStretch& stretch, const double* point, double
                        double high) {
   // Bisection alone needs 53 steps from any bracket to neighbouring doubles.
   constexpr int kMaxSteps = 100;
-  const double tolerance = 2.0 * kEpsilon * std::max(std::abs(low), std::abs(high));
+  const double tolerance = 2.0 * kUnitRoundoff * std::max(std::abs(low), std::abs(high));
   bool low_is_tried = false;
   bool high_is_tried = false;
   const double begin = low;

@@ -8,7 +8,7 @@
 namespace batten {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kPieceRounding = std::numeric_limits<double>::epsilon();
 constexpr int kMaxProduct = 2 * kMaxDegree + 1;
 
 /// binomial[p][i] up to 2 kMaxDegree.
@@ -81,7 +81,7 @@ void DistancePiece::Look() {
   // at most p + d + 2 sums and products, all at once.
   const double size = std::sqrt(largest);
   const double noise = 2.0 * std::sqrt(dimension_) * rounding_ * (size + rounding_) +
-                       (degree_ + dimension_ + 2) * kEpsilon * largest;
+                       (degree_ + dimension_ + 2) * kPieceRounding * largest;
   double least = f[0];
   bool rises = true, falls = true, convex = true;
   for (int k = 1; k <= 2 * degree_; ++k) {

@@ -11,27 +11,25 @@
 namespace batten {
 namespace {
 
-using Json = nlohmann::json;
-
 /// The fields of a row; one that is missing or wrong makes all of it bad.
 class RowFields {
  public:
   explicit RowFields(const std::string& line)
-      : json_(Json::parse(line, nullptr, /*allow_exceptions=*/false)),
+      : json_(nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false)),
         is_good_(json_.is_object()) {}
 
   bool is_good() const { return is_good_; }
   void Require(bool condition) { is_good_ = is_good_ && condition; }
 
-  const Json& At(const std::string& key) {
-    static const Json& none = *new Json(Json::value_t::discarded);
+  const nlohmann::json& At(const std::string& key) {
+    static const nlohmann::json& none = *new nlohmann::json(nlohmann::json::value_t::discarded);
     const auto found = is_good_ ? json_.find(key) : json_.end();
     Require(found != json_.end());
     return is_good_ ? *found : none;
   }
   bool IsNull(const std::string& key) { return At(key).is_null(); }
 
-  std::string TextOf(const Json& value) {
+  std::string TextOf(const nlohmann::json& value) {
     Require(value.is_string());
     std::string text = is_good_ ? value.get<std::string>() : "";
     Require(
@@ -42,7 +40,7 @@ class RowFields {
 
   /// null: no finite number.
   double Number(const std::string& key) {
-    const Json& value = At(key);
+    const nlohmann::json& value = At(key);
     Require(value.is_null() || value.is_number());
     return is_good_ && value.is_number() ? value.get<double>() : std::nan("");
   }
@@ -50,7 +48,7 @@ class RowFields {
   /// null: 0, where a solver did not run.
   template <typename Integer>
   Integer Whole(const std::string& key, Integer highest = std::numeric_limits<Integer>::max()) {
-    const Json& value = At(key);
+    const nlohmann::json& value = At(key);
     if (value.is_null()) return 0;
     Require(value.is_number_unsigned() &&
             value.get<std::uint64_t>() <= static_cast<std::uint64_t>(highest));
@@ -58,13 +56,13 @@ class RowFields {
   }
 
   bool Flag(const std::string& key, bool if_null) {
-    const Json& value = At(key);
+    const nlohmann::json& value = At(key);
     Require(value.is_null() || value.is_boolean());
     return is_good_ && value.is_boolean() ? value.get<bool>() : if_null;
   }
 
  private:
-  Json json_;
+  nlohmann::json json_;
   bool is_good_;
 };
 
@@ -105,9 +103,9 @@ void ReadRun(RowFields* fields, RunResult* run) {
   std::string ignored;
   fields->Require(SolverRegistry::Global().Make(run->solver, &options, &ignored) != nullptr);
   run->options = options.ToText();
-  fields->Require(fields->At("options") == Json(run->options));
+  fields->Require(fields->At("options") == nlohmann::json(run->options));
   fields->Require(fields->At("notes").is_array());
-  for (const Json& note : fields->At("notes")) {
+  for (const nlohmann::json& note : fields->At("notes")) {
     fields->Require(note.is_object() && note.contains("name") && note.contains("value"));
     if (!fields->is_good()) return;
     run->notes.emplace_back(fields->TextOf(note["name"]), fields->TextOf(note["value"]));

@@ -13,8 +13,9 @@ namespace batten {
 namespace {
 
 /// What goes with a search: the data, the kind of curve, where to start, what to write.
-constexpr const char* kAllowed[] = {"problem", "closed", "degree",           "parameters",  "out",
-                                    "figure",  "quiet",  "curvature_figure", "max_distance"};
+constexpr const char* kAllowedFlags[] = {"problem",     "closed", "degree", "parameters",
+                                         "out",         "figure", "quiet",  "curvature_figure",
+                                         "max_distance"};
 
 }  // namespace
 
@@ -29,7 +30,7 @@ double MaxDistance() { return FLAGS_max_distance; }
 bool CheckMaxDistanceFlags(const std::vector<FlagInfo>& flags, const FitSpec& spec,
                            std::string* error) {
   for (const FlagInfo& flag : flags) {
-    const bool is_allowed = std::any_of(std::begin(kAllowed), std::end(kAllowed),
+    const bool is_allowed = std::any_of(std::begin(kAllowedFlags), std::end(kAllowedFlags),
                                         [&](const char* name) { return flag.name == name; });
     if (is_allowed || !WasGiven(flag.name)) continue;
     *error = "--" + flag.name +
