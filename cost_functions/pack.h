@@ -51,6 +51,22 @@ struct PackOf {
   void Store(double* aligned_target) const {
     for (int l = 0; l < kLanes; ++l) reinterpret_cast<Lane*>(aligned_target)[l] = lanes[l];
   }
+  /// The first `count` entries, at any place; what is not loaded is 0.
+  static PackOf LoadFirst(const double* source, int count) {
+    PackOf pack(0.0);
+    for (int i = 0; i < count; ++i) pack.Set(i, source[i]);
+    return pack;
+  }
+  void StoreFirst(double* target, int count) const {
+    for (int i = 0; i < count; ++i) target[i] = lanes[i / kLaneSize][i % kLaneSize];
+  }
+  void Set(int i, double value) { lanes[i / kLaneSize][i % kLaneSize] = value; }
+  /// Of all entries, in one order for any width.
+  double Sum() const {
+    double sum = 0.0;
+    for (int i = 0; i < kRowPack; ++i) sum += lanes[i / kLaneSize][i % kLaneSize];
+    return sum;
+  }
   template <typename Function>
   PackOf Map(Function function) const {
     PackOf result;
@@ -88,6 +104,54 @@ struct PackOf {
   friend PackOf operator+(double a, const PackOf& b) { return PackOf(a) + b; }
   friend PackOf operator-(double a, const PackOf& b) { return PackOf(a) - b; }
   friend PackOf operator*(double a, const PackOf& b) { return PackOf(a) * b; }
+  friend PackOf operator/(double a, const PackOf& b) { return PackOf(a) / b; }
+
+  /// What a comparison finds, entry by entry.
+  struct Mask {
+    typedef long long Lane __attribute__((vector_size(kLaneSize * sizeof(double))));
+    Lane lanes[kLanes];
+
+    friend Mask operator&(const Mask& a, const Mask& b) {
+      Mask result;
+      for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] & b.lanes[l];
+      return result;
+    }
+    friend Mask operator|(const Mask& a, const Mask& b) {
+      Mask result;
+      for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] | b.lanes[l];
+      return result;
+    }
+    friend Mask operator!(const Mask& a) {
+      Mask result;
+      for (int l = 0; l < kLanes; ++l) result.lanes[l] = ~a.lanes[l];
+      return result;
+    }
+    friend bool Any(const Mask& a) {
+      long long any = 0;
+      for (int l = 0; l < kLanes; ++l) {
+        for (int i = 0; i < kLaneSize; ++i) any |= a.lanes[l][i];
+      }
+      return any != 0;
+    }
+  };
+  friend Mask operator<(const PackOf& a, const PackOf& b) {
+    Mask result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] < b.lanes[l];
+    return result;
+  }
+  friend Mask operator<=(const PackOf& a, const PackOf& b) {
+    Mask result;
+    for (int l = 0; l < kLanes; ++l) result.lanes[l] = a.lanes[l] <= b.lanes[l];
+    return result;
+  }
+  /// a where the mask is set, else b.
+  friend PackOf Choose(const Mask& mask, const PackOf& a, const PackOf& b) {
+    PackOf result;
+    for (int l = 0; l < kLanes; ++l) {
+      result.lanes[l] = mask.lanes[l] ? a.lanes[l] : b.lanes[l];
+    }
+    return result;
+  }
 
   Lane lanes[kLanes];
 };

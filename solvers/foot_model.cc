@@ -53,11 +53,18 @@ FootModel::FootModel(const FreeView& view, int threads)
   middles_.resize(spans);
   coefficients_.resize(spans * k * k);
   curve_.resize(spans * local);
-  span_of_.resize(m);
-  places_.resize(m);
-  moves_.resize(m);
+  runs_.reserve(m + 1);
+  wrapped_.resize(m);
+  moves_.assign(m, 1.0);
+  for (int i = 0; i < view.num_points(); ++i) {
+    if (view.is_held(i)) moves_[i] = 0.0;
+  }
+  has_held_ = std::find(moves_.begin(), moves_.end(), 0.0) != moves_.end();
   order_of_points_.resize(m);
-  states_.resize(m);
+  places_.resize(m);
+  along_.resize(m);
+  denominators_.resize(m);
+  scales_.resize(m);
   span_begins_.resize(spans + 1);
   span_sums_.resize(spans * SpanStride());
   span_energies_.resize(spans);
@@ -91,43 +98,67 @@ void FootModel::PrepareSpans() {
   }
 }
 
-void FootModel::PrepareCurve(const double* control_points) {
+void FootModel::CurveOfSpan(int span, const double* control_points, double* curve) const {
   const int k = order_, d = dimension_;
-  for (int s = 0; s < basis_.num_domain_spans(); ++s) {
-    double* curve = &curve_[static_cast<std::size_t>(s) * k * d];
-    const double* c = &coefficients_[static_cast<std::size_t>(s) * k * k];
-    std::fill(curve, curve + k * d, 0.0);
-    for (int j = 0; j < k; ++j) {
-      const int index = basis_.ControlPointIndex(basis_.first_span() + s - basis_.degree() + j);
-      for (int power = 0; power < k; ++power) {
-        for (int e = 0; e < d; ++e) {
-          curve[power * d + e] += c[power * k + j] * control_points[index * d + e];
-        }
+  const double* c = &coefficients_[static_cast<std::size_t>(span) * k * k];
+  std::fill(curve, curve + k * d, 0.0);
+  for (int j = 0; j < k; ++j) {
+    const int index = basis_.ControlPointIndex(basis_.first_span() + span - basis_.degree() + j);
+    for (int power = 0; power < k; ++power) {
+      for (int e = 0; e < d; ++e) {
+        curve[power * d + e] += c[power * k + j] * control_points[index * d + e];
       }
     }
   }
 }
 
-/// Counting sort; of points in one span the order stays.
+void FootModel::PrepareCurve(const double* control_points) {
+  for (int s = 0; s < basis_.num_domain_spans(); ++s) {
+    CurveOfSpan(s, control_points, &curve_[static_cast<std::size_t>(s) * local_]);
+  }
+}
+
+/// Counting sort of runs of neighbours in one span; of points in one span the order stays.
 void FootModel::SortBySpan(const double* parameters) {
+  FindRuns(parameters);
   std::fill(span_begins_.begin(), span_begins_.end(), 0);
-  const int m = view_.num_points();
-  int span = basis_.first_span();
-  for (int i = 0; i < m; ++i) {
-    const double t = basis_.Wrap(parameters[i]);
-    span = basis_.FindSpanFrom(span, t);
-    places_[i] = t;
-    moves_[i] = view_.is_held(i) ? 0 : 1;
-    span_of_[i] = span - basis_.first_span();
-    ++span_begins_[static_cast<std::size_t>(span_of_[i]) + 1];
+  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
+    span_begins_[static_cast<std::size_t>(runs_[r].span) + 1] +=
+        runs_[r + 1].begin - runs_[r].begin;
   }
   for (std::size_t s = 1; s < span_begins_.size(); ++s) span_begins_[s] += span_begins_[s - 1];
-  for (int i = 0; i < m; ++i) {
-    order_of_points_[static_cast<std::size_t>(span_begins_[span_of_[i]]++)] = i;
+  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
+    int place = span_begins_[runs_[r].span];
+    for (int i = runs_[r].begin; i < runs_[r + 1].begin; ++i, ++place) {
+      order_of_points_[place] = i;
+      places_[place] = wrapped_[i];
+    }
+    span_begins_[runs_[r].span] = place;
   }
   for (std::size_t s = span_begins_.size() - 1; s > 0; --s) span_begins_[s] = span_begins_[s - 1];
   span_begins_[0] = 0;
   ShareSpans();
+}
+
+/// Parameters into the domain, and where neighbours are in different spans; one run of none ends
+/// them.
+void FootModel::FindRuns(const double* parameters) {
+  runs_.clear();
+  int span = basis_.first_span();
+  double low = 1.0, high = 0.0;  // no t is in
+  for (int i = 0; i < view_.num_points(); ++i) {
+    double t = parameters[i];
+    if (!(t >= low && t < high)) {
+      t = basis_.Wrap(t);
+      const int found = basis_.FindSpanFrom(span, t);
+      if (runs_.empty() || found != span) runs_.push_back({found - basis_.first_span(), i});
+      span = found;
+      low = basis_.knots()[span];
+      high = basis_.knots()[span + 1];
+    }
+    wrapped_[i] = t;
+  }
+  runs_.push_back({0, view_.num_points()});
 }
 
 /// Whole spans to each thread, with about as many points.
@@ -151,10 +182,10 @@ void FootModel::ForEachShare(Body body) {
 
 template <typename Body>
 void FootModel::WithKernel(Body body) {
-  if (order_ == 4 && dimension_ == 2) return body(Kernel<3, 2>{*this});
-  if (order_ == 4 && dimension_ == 3) return body(Kernel<3, 3>{*this});
-  if (order_ == 3 && dimension_ == 2) return body(Kernel<2, 2>{*this});
-  body(Kernel<-1, -1>{*this});
+  if (order_ == 4 && dimension_ == 2) return body(Kernel<3, 2>{{*this}});
+  if (order_ == 4 && dimension_ == 3) return body(Kernel<3, 3>{{*this}});
+  if (order_ == 3 && dimension_ == 2) return body(Kernel<2, 2>{{*this}});
+  body(Kernel<-1, -1>{{*this}});
 }
 
 bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping) {

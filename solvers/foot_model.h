@@ -74,18 +74,22 @@ class FootModel {
   double Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step, Eigen::VectorXd* next);
 
  private:
-  struct PointState {
-    double along = 0.0;        // C' . r
-    double denominator = 0.0;  // of the parameter's step; 0: it stays
-    double scale = 0.0;        // w |C'|^2 times the damping
+  struct Run {
+    int span;   // less the first one
+    int begin;  // index of its first point
   };
+  template <int P, int D>
+  struct SpanPoints;
   template <int P, int D>
   struct Kernel;
   template <typename Body>
   void WithKernel(Body body);
   void PrepareSpans();
   void PrepareCurve(const double* control_points);
+  /// (p + 1) powers of t - middle x d of the curve of these control points over a span.
+  void CurveOfSpan(int span, const double* control_points, double* curve) const;
   void SortBySpan(const double* parameters);
+  void FindRuns(const double* parameters);
   void ShareSpans();
   template <typename Body>
   void ForEachShare(Body body);
@@ -112,13 +116,17 @@ class FootModel {
   std::vector<double> middles_;       // of the spans
   std::vector<double> coefficients_;  // per span: (p + 1) powers of t - middle x (p + 1) functions
   std::vector<double> curve_;         // per span: (p + 1) powers x d
-  std::vector<int> span_of_;          // m, less the first span
-  std::vector<double> places_;        // m: t in the domain
-  std::vector<char> moves_;           // m: 0 where t is held
+  std::vector<Run> runs_;             // of neighbours in one span
+  std::vector<double> wrapped_;       // m: t in the domain
+  std::vector<double> moves_;         // m: 0 where t is held, else 1
+  bool has_held_;
   std::vector<int> order_of_points_;  // by span
-  std::vector<int> span_begins_;      // into it
+  std::vector<int> span_begins_;      // into it, and into what is kept in this order:
+  std::vector<double> places_;        // t in the domain
+  std::vector<double> along_;         // C' . r
+  std::vector<double> denominators_;  // of the parameter's step; 0: it stays
+  std::vector<double> scales_;        // w |C'|^2 times the damping
   std::vector<int> shares_;           // spans of each thread
-  std::vector<PointState> states_;    // m
   // Per span: local x local of the half Hessian, upper triangle; local of the half gradient; p + 1
   // of the diagonal.
   std::vector<double> span_sums_;
