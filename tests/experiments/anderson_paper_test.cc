@@ -235,6 +235,28 @@ TEST(AndersonPaper, TellsWhatOurExampleGivesAndJudgesByThePapersAlone) {
   }
 }
 
+TEST(AndersonPaper, TellsUndampedTdmOnOurExampleAndJudgesByThePapersAlone) {
+  const auto tables = [](const char* end) {
+    ExperimentTables made;
+    CsvTable& table = made[""] = CsvTable(FreeRunColumns());
+    for (const std::string& example : PaperExampleNames()) {
+      Add({{"example", example},
+           {"solver", kUndampedTdm},
+           {"start_energy", "2"},
+           {"foot_energy", end}},
+          &table);
+    }
+    return made;
+  };
+  const Experiment experiment = AndersonPaperExamples();
+  const ExperimentTables diverging = tables("3"), falling = tables("1");
+  const ExperimentTables falls_on_ours = WithOurExample(diverging, falling);
+  EXPECT_EQ(Verdict(experiment, falls_on_ours, 4), kHolds);
+  EXPECT_EQ(Verdict(experiment, WithOurExample(falling, diverging), 4), kDoesNotHold);
+  EXPECT_THAT(experiment.claims[4].judge(falls_on_ours).because,
+              HasSubstr("crawling (ours), not counted: 2.00 to 1.00"));
+}
+
 struct Windows {
   const char* small;  // iterations with windows 1 to 6
   const char* large;  // with 7 and 8
