@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 #include "experiments/comparison.h"
 #include "experiments/fit_report.h"
@@ -27,50 +28,91 @@ void TakeApart(const Problem& problem, DataSet* data, FitSpec* spec) {
   if (!spec->parameters.has_value()) data->parameters = fit.parameters();
 }
 
+int CountBasins(const std::vector<int>& basins) {
+  return basins.empty() ? 0 : *std::max_element(basins.begin(), basins.end()) + 1;
+}
+
+/// Which end stands for `basin`: all ends in it are one curve.
+std::size_t FirstEnd(const std::vector<int>& basins, int basin) {
+  return static_cast<std::size_t>(std::find(basins.begin(), basins.end(), basin) - basins.begin());
+}
+
+/// What each basin's curve is like. There are no circles on the line, where a curve has no shape.
+std::vector<CurveShape> BasinShapes(const CurveFit& fit, const std::vector<BasinEnd>& ends,
+                                    const std::vector<int>& basins) {
+  std::vector<CurveShape> shapes;
+  for (int basin = 0; basin < CountBasins(basins); ++basin) {
+    const BsplineCurve curve(fit.basis(), ends[FirstEnd(basins, basin)].control_points);
+    Eigen::VectorXd feet =
+        Eigen::VectorXd::Constant(fit.data().points.rows(), curve.basis().domain_begin());
+    ClosestPoint(curve).FindAll(fit.data().points, 1, &feet, nullptr);
+    shapes.push_back(ShapeBesideData(fit, curve, feet).value());
+  }
+  return shapes;
+}
+
+/// What the curves that a solver's runs end in are like, as cells.
+std::vector<std::string> EndCells(const std::vector<int>& basins_of_ends,
+                                  const std::vector<CurveShape>& shapes) {
+  std::vector<double> lengths;
+  int with_loops = 0;
+  for (const int basin : basins_of_ends) {
+    const CurveShape& shape = shapes[static_cast<std::size_t>(basin)];
+    lengths.push_back(shape.length);
+    with_loops += shape.num_free_loops > 0 ? 1 : 0;
+  }
+  const double share =
+      lengths.empty() ? std::nan("") : with_loops / static_cast<double>(lengths.size());
+  return {NumberText(Median(lengths)), NumberText(share)};
+}
+
 CsvTable SolverTable(const std::string& problem, const StartComparisonSpec& spec,
                      const std::vector<OneRun>& runs, const std::vector<BasinEnd>& ends,
-                     const std::vector<int>& basins) {
+                     const std::vector<int>& basins, const std::vector<CurveShape>& shapes) {
   CsvTable table({"problem", "solver", "runs", "reached", "best_found", "basins", "median_energy",
-                  "best_energy", "median_iterations", "median_seconds"});
+                  "best_energy", "median_length", "loop_share", "median_iterations",
+                  "median_seconds"});
   for (std::size_t s = 0; s < spec.solvers.size(); ++s) {
-    int count = 0, reached = 0, best = 0;
-    std::vector<int> seen;
+    int reached = 0;
+    std::vector<int> ended_in;
     std::vector<double> energies, iterations, seconds;
     for (std::size_t k = 0; k < runs.size(); ++k) {
       if (runs[k].solver != s) continue;
-      ++count;
       reached += IsSuccess(runs[k].run.outcome.reason) ? 1 : 0;
-      best += basins[k] == 0 ? 1 : 0;
-      if (std::find(seen.begin(), seen.end(), basins[k]) == seen.end()) seen.push_back(basins[k]);
+      ended_in.push_back(basins[k]);
       energies.push_back(ends[k].energy_at_foot_points);
       iterations.push_back(runs[k].run.iterations);
       seconds.push_back(runs[k].run.seconds);
     }
+    const auto best = std::count(ended_in.begin(), ended_in.end(), 0);
+    const std::set<int> different(ended_in.begin(), ended_in.end());
     const double least =
         energies.empty() ? std::nan("") : *std::min_element(energies.begin(), energies.end());
-    table.AddRow({problem, spec.solvers[s].ToString(), std::to_string(count),
-                  std::to_string(reached), std::to_string(best), std::to_string(seen.size()),
-                  NumberText(Median(energies)), NumberText(least), NumberText(Median(iterations)),
-                  NumberText(Median(seconds))});
+    std::vector<std::string> row = {problem,
+                                    spec.solvers[s].ToString(),
+                                    std::to_string(ended_in.size()),
+                                    std::to_string(reached),
+                                    std::to_string(best),
+                                    std::to_string(different.size()),
+                                    NumberText(Median(energies)),
+                                    NumberText(least)};
+    for (std::string& cell : EndCells(ended_in, shapes)) row.push_back(std::move(cell));
+    row.push_back(NumberText(Median(iterations)));
+    row.push_back(NumberText(Median(seconds)));
+    table.AddRow(row);
   }
   return table;
 }
 
-/// What a basin's curve is like, as cells.
-std::vector<std::string> ShapeCells(const CurveFit& fit, const BasinEnd& end) {
-  const BsplineCurve curve(fit.basis(), end.control_points);
-  Eigen::VectorXd feet =
-      Eigen::VectorXd::Constant(fit.data().points.rows(), curve.basis().domain_begin());
-  ClosestPoint(curve).FindAll(fit.data().points, 1, &feet, nullptr);
-  const std::optional<CurveShape> shape = ShapeBesideData(fit, curve, feet);
-  if (!shape.has_value()) return {"-", "-", "-", "-"};
-  return {NumberText(shape->length), NumberText(shape->turning),
-          std::to_string(shape->num_free_loops), NumberText(shape->max_distance_to_data)};
+/// A basin's shape as cells.
+std::vector<std::string> ShapeCells(const CurveShape& shape) {
+  return {NumberText(shape.length), NumberText(shape.turning), std::to_string(shape.num_free_loops),
+          NumberText(shape.max_distance_to_data)};
 }
 
-CsvTable BasinTable(const Problem& problem, const StartComparisonSpec& spec,
+CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
                     const std::vector<OneRun>& runs, const std::vector<BasinEnd>& ends,
-                    const std::vector<int>& basins) {
+                    const std::vector<int>& basins, const std::vector<CurveShape>& shapes) {
   std::vector<std::string> columns = {
       "problem", "basin",   "energy",         "energy_at_foot_points",
       "length",  "turning", "num_free_loops", "max_distance_to_data"};
@@ -79,14 +121,11 @@ CsvTable BasinTable(const Problem& problem, const StartComparisonSpec& spec,
     columns.push_back(solver.ToString() + " seconds");
   }
   CsvTable table(columns);
-  const int count = basins.empty() ? 0 : *std::max_element(basins.begin(), basins.end()) + 1;
-  for (int basin = 0; basin < count; ++basin) {
-    const auto first =
-        static_cast<std::size_t>(std::find(basins.begin(), basins.end(), basin) - basins.begin());
-    std::vector<std::string> row = {problem.name(), std::to_string(basin + 1),
-                                    NumberText(ends[first].energy),
-                                    NumberText(ends[first].energy_at_foot_points)};
-    for (std::string& cell : ShapeCells(*problem.curve_fit(), ends[first])) {
+  for (int basin = 0; basin < CountBasins(basins); ++basin) {
+    const BasinEnd& first = ends[FirstEnd(basins, basin)];
+    std::vector<std::string> row = {problem, std::to_string(basin + 1), NumberText(first.energy),
+                                    NumberText(first.energy_at_foot_points)};
+    for (std::string& cell : ShapeCells(shapes[static_cast<std::size_t>(basin)])) {
       row.push_back(std::move(cell));
     }
     for (std::size_t s = 0; s < spec.solvers.size(); ++s) {
@@ -152,8 +191,9 @@ bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
   }
   comparison->interrupted = InterruptRequested();
   const std::vector<int> basins = FindBasins(problem, ends);
-  comparison->solvers = SolverTable(problem.name(), spec, runs, ends, basins);
-  comparison->basins = BasinTable(problem, spec, runs, ends, basins);
+  const std::vector<CurveShape> shapes = BasinShapes(*problem.curve_fit(), ends, basins);
+  comparison->solvers = SolverTable(problem.name(), spec, runs, ends, basins, shapes);
+  comparison->basins = BasinTable(problem.name(), spec, runs, ends, basins, shapes);
   comparison->runs = CsvTable({"problem", "solver", "start", "status", "iterations", "seconds",
                                "energy", "energy_at_foot_points", "basin", "polished"});
   for (std::size_t k = 0; k < runs.size(); ++k) {

@@ -26,11 +26,12 @@ struct StartComparisonSpec {
 struct StartComparison {
   /// A row per solver: problem, solver, runs, reached (what was asked), best_found (ends in the
   /// best basin of all), basins (different ones), median_energy and best_energy (at foot points),
-  /// median_iterations, median_seconds.
+  /// median_length (unit of the data) and loop_share (0 to 1: ends with a free loop) of the curves
+  /// of those basins, median_iterations, median_seconds.
   CsvTable solvers;
   /// A row per basin in the order of its energy: problem, basin, energy, energy_at_foot_points, its
-  /// curve's length, turning, num_free_loops and max_distance_to_data (CurveShape; "-" in dimension
-  /// 1), then for each solver how many of its runs end there and the median of their seconds.
+  /// curve's length, turning, num_free_loops and max_distance_to_data (CurveShape), then for each
+  /// solver how many of its runs end there and the median of their seconds.
   CsvTable basins;
   /// A row per run: problem, solver, start, status, iterations, seconds, energy, basin, polished.
   CsvTable runs;

@@ -19,10 +19,11 @@ DEFINE_string(solvers, "all",
               "them: every registered one, with its defaults.");
 DEFINE_int32(repetitions, batten::ComparisonSpec().repetitions,
              "Runs of each solver, interleaved; times are medians.");
-DEFINE_int32(starts, 0,
-             "Problems whose E may have several minima: how often each solver finds which minimum "
-             "from so many "
-             "disturbed circles, instead of the usual table.");
+DEFINE_int32(
+    starts, 0,
+    "Problems whose E may have several minima: how often each solver finds which minimum "
+    "from so many disturbed circles, and how many of its curves have loops, instead of the "
+    "usual table.");
 DEFINE_int32(
     keep_iterates, 0,
     "So many iterates of each run are kept, for the player of batten report; not where all "

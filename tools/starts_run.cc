@@ -97,7 +97,9 @@ int RunStartComparisons(const std::vector<std::shared_ptr<const Problem>>& probl
       "one curve, to 1e-6 of the size, share a basin, numbered by energy at foot points, with "
       "fixed parameters by energy. "
       "best_found: runs that end in basin "
-      "1.\n";
+      "1; median_length: of the curves at the ends, in the unit of the data (basin 1's is in the "
+      "table of basins); loop_share: share of ends whose curve has a loop that no data point is "
+      "nearest to.\n";
   if (!write("starts_solvers.csv", solvers) || !write("starts_runs.csv", runs)) return kBadInput;
   return batch.Commit(&output->error) ? kDone : kBadInput;
 }
