@@ -121,14 +121,17 @@ std::vector<int> FindBasins(const BsplineBasis& basis, double size,
   // One curve has one energy: only ends with like energies have to be compared as curves. At a
   // distance of kSameCurve E differs by its first-order part, which a minimum does not have.
   constexpr double kLikeEnergies = 1e-4;
+  // Below it no data point is kSameCurve away, and how energies compare is rounding.
+  const double all_fit = std::pow(kSameCurve * size, 2);
   std::vector<std::size_t> firsts;  // of the basins
   std::vector<int> basins(ends.size(), -1);
   for (const std::size_t k : order) {
     const BsplineCurve curve(basis, ends[k].control_points);
     for (std::size_t b = firsts.size(); b-- > 0 && basins[k] < 0;) {
       const BasinEnd& first = ends[firsts[b]];
-      const double apart = ends[k].energy_at_foot_points - first.energy_at_foot_points;
-      if (apart > kLikeEnergies * ends[k].energy_at_foot_points) break;
+      const double energy = ends[k].energy_at_foot_points;
+      const double apart = energy - first.energy_at_foot_points;
+      if (apart > kLikeEnergies * energy && energy > all_fit) break;
       const BsplineCurve other(basis, first.control_points);
       if (CurveDistanceBetween(curve, other) < kSameCurve * size) {
         basins[k] = static_cast<int>(b);

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "solvers/foot_model_kernel.h"
-#include "splines/basis_functions.h"
 
 namespace batten {
 namespace {
@@ -74,103 +73,6 @@ FootModel::FootModel(const FreeView& view, int threads)
   for (Eigen::Index i = 0; i < sites_.weights.size(); ++i) {
     scale_ += sites_.weights[i] * sites_.points.row(i).squaredNorm();
   }
-}
-
-/// Taylor's coefficients of the basis functions in the middle of each span.
-void FootModel::PrepareSpans() {
-  const int k = order_;
-  double values[kMaxOrder * kMaxOrder];
-  for (int s = 0; s < basis_.num_domain_spans(); ++s) {
-    const int span = basis_.first_span() + s;
-    const double low = basis_.knots()[span], high = basis_.knots()[span + 1];
-    middles_[s] = low + 0.5 * (high - low);
-    if (!(low < high)) continue;
-    EvaluateBasisDerivatives(basis_.degree(), basis_.knots().data(), span, middles_[s], k - 1,
-                             values);
-    double factorial = 1.0;
-    for (int power = 0; power < k; ++power) {
-      if (power > 0) factorial *= power;
-      for (int j = 0; j < k; ++j) {
-        coefficients_[(static_cast<std::size_t>(s) * k + power) * k + j] =
-            values[power * k + j] / factorial;
-      }
-    }
-  }
-}
-
-void FootModel::CurveOfSpan(int span, const double* control_points, double* curve) const {
-  const int k = order_, d = dimension_;
-  const double* c = &coefficients_[static_cast<std::size_t>(span) * k * k];
-  std::fill(curve, curve + k * d, 0.0);
-  for (int j = 0; j < k; ++j) {
-    const int index = basis_.ControlPointIndex(basis_.first_span() + span - basis_.degree() + j);
-    for (int power = 0; power < k; ++power) {
-      for (int e = 0; e < d; ++e) {
-        curve[power * d + e] += c[power * k + j] * control_points[index * d + e];
-      }
-    }
-  }
-}
-
-void FootModel::PrepareCurve(const double* control_points) {
-  for (int s = 0; s < basis_.num_domain_spans(); ++s) {
-    CurveOfSpan(s, control_points, &curve_[static_cast<std::size_t>(s) * local_]);
-  }
-}
-
-/// Counting sort of runs of neighbours in one span; of points in one span the order stays.
-void FootModel::SortBySpan(const double* parameters) {
-  FindRuns(parameters);
-  std::fill(span_begins_.begin(), span_begins_.end(), 0);
-  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
-    span_begins_[static_cast<std::size_t>(runs_[r].span) + 1] +=
-        runs_[r + 1].begin - runs_[r].begin;
-  }
-  for (std::size_t s = 1; s < span_begins_.size(); ++s) span_begins_[s] += span_begins_[s - 1];
-  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
-    int place = span_begins_[runs_[r].span];
-    for (int i = runs_[r].begin; i < runs_[r + 1].begin; ++i, ++place) {
-      order_of_points_[place] = i;
-      places_[place] = wrapped_[i];
-    }
-    span_begins_[runs_[r].span] = place;
-  }
-  for (std::size_t s = span_begins_.size() - 1; s > 0; --s) span_begins_[s] = span_begins_[s - 1];
-  span_begins_[0] = 0;
-  ShareSpans();
-}
-
-/// Parameters into the domain, and where neighbours are in different spans; one run of none ends
-/// them.
-void FootModel::FindRuns(const double* parameters) {
-  runs_.clear();
-  int span = basis_.first_span();
-  double low = 1.0, high = 0.0;  // no t is in
-  for (int i = 0; i < view_.num_points(); ++i) {
-    double t = parameters[i];
-    if (!(t >= low && t < high)) {
-      t = basis_.Wrap(t);
-      const int found = basis_.FindSpanFrom(span, t);
-      if (runs_.empty() || found != span) runs_.push_back({found - basis_.first_span(), i});
-      span = found;
-      low = basis_.knots()[span];
-      high = basis_.knots()[span + 1];
-    }
-    wrapped_[i] = t;
-  }
-  runs_.push_back({0, view_.num_points()});
-}
-
-/// Whole spans to each thread, with about as many points.
-void FootModel::ShareSpans() {
-  const int spans = basis_.num_domain_spans();
-  const int threads = workers_.num_threads();
-  for (int k = 0; k <= threads; ++k) {
-    const auto target = static_cast<int>(static_cast<double>(view_.num_points()) * k / threads);
-    const auto found = std::lower_bound(span_begins_.begin(), span_begins_.end() - 1, target);
-    shares_[k] = k == threads ? spans : static_cast<int>(found - span_begins_.begin());
-  }
-  shares_[0] = 0;
 }
 
 template <typename Body>

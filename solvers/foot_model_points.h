@@ -133,8 +133,7 @@ struct FootModel::SpanPoints {
         // Where f'' is not positive, t is at no minimum: Gauss and Newton's denominator leads to
         // one.
         constexpr double kLeast = 1e-3;
-        denominator =
-            Choose(kLeast * speed < speed + bend, denominator + bend, denominator);
+        denominator = Choose(kLeast * speed < speed + bend, denominator + bend, denominator);
       }
       a = Choose(moves, 1.0 / denominator, zero);
       denominator = Choose(moves, denominator, zero);

@@ -56,6 +56,18 @@ TEST(Basins, EndsOfOneCurveShareABasinWhateverTheirSeam) {
   EXPECT_EQ(basins[0], 1);
 }
 
+TEST(Basins, OfCurvesThroughAllPointsAreToldByTheCurves) {
+  // Energies of exact fits are rounding: their ratios say nothing.
+  const BsplineCurve round = Round(8, 1.0, 0.0);
+  std::vector<BasinEnd> ends(4);
+  const double energies[] = {1e-31, 3e-30, 2e-31, 7e-31};
+  for (int k = 0; k < 4; ++k) {
+    ends[k].control_points = k == 3 ? Points(2.0 * round.control_points()) : round.control_points();
+    ends[k].energy_at_foot_points = energies[k];
+  }
+  EXPECT_EQ(FindBasins(round.basis(), 2.0, ends), (std::vector<int>{0, 0, 0, 1}));
+}
+
 TEST(Basins, PolishingABasinAgainFindsTheSameCurve) {
   const auto problem = LoadCatalogueProblem("dolphin_free");
   const CurveFit& fit = *problem->curve_fit();

@@ -32,9 +32,9 @@ Fitted FitEllipseBeside(const std::vector<std::pair<double, double>>& more) {
     points += "0.3," + NumberText(x) + "," + NumberText(y) + ",0\n";
   }
   const TemporaryFolder folder;
-  const Ended ended = RunBatten({"fit", folder.Write("ellipse.csv", points), "--closed",
-                                 "--control_points=8", "--parameters=given", "--solver=banded_qr",
-                                 "--out=" + (folder / "fit.json")});
+  const Ended ended =
+      RunBatten({"fit", folder.Write("ellipse.csv", points), "--closed", "--control_points=8",
+                 "--parameters=given", "--solver=banded_qr", "--out=" + (folder / "fit.json")});
   EXPECT_EQ(ended.status, 0) << ended.err;
   return {json::parse(ReadFile(folder / "fit.json"), nullptr, false), ended.out};
 }
