@@ -6,21 +6,21 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "tests/cost_functions/example_fit.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-const double kStep = std::cbrt(kEpsilon);
 // Central differences at cbrt(eps): h^2 by truncation and eps / h by rounding, times values and
 // derivatives that are below 50 for the functions here.
-const double kDifferenceTolerance = 50.0 * kStep * kStep;
+const double kFunctorsTolerance = 50.0 * kStep * kStep;
 
 /// Two residuals in a point a and a number b, curved in both.
-struct Curved {
+struct CurvedPair {
   template <typename T>
   bool operator()(const T* a, const T* b, T* residuals) const {
     using std::exp;
@@ -49,16 +49,16 @@ struct Failing {
   }
 };
 
-std::unique_ptr<ceres::CostFunction> MakeCurved(double shift) {
-  return std::make_unique<ceres::AutoDiffCostFunction<Curved, 2, 2, 1>>(new Curved{shift});
+std::unique_ptr<ceres::CostFunction> MakeCurvedPair(double shift) {
+  return std::make_unique<ceres::AutoDiffCostFunction<CurvedPair, 2, 2, 1>>(new CurvedPair{shift});
 }
 
 /// x = (b, a, a'): three blocks, of which two share b.
 std::unique_ptr<CostFunctionFamily> MakeFamily(double weight,
                                                std::shared_ptr<const ceres::LossFunction> loss) {
   auto family = std::make_unique<CostFunctionFamily>(weight, std::move(loss));
-  family->AddBlock(MakeCurved(0.7), {1, 0});
-  family->AddBlock(MakeCurved(-1.1), {3, 0});
+  family->AddBlock(MakeCurvedPair(0.7), {1, 0});
+  family->AddBlock(MakeCurvedPair(-1.1), {3, 0});
   family->AddBlock(std::make_unique<ceres::AutoDiffCostFunction<Quadratic, 2, 2>>(new Quadratic),
                    {3});
   return family;
@@ -68,19 +68,6 @@ Eigen::VectorXd SomePoint() {
   Eigen::VectorXd x(5);
   x << 0.8, -0.6, 1.3, 0.45, -0.9;
   return x;
-}
-
-double EnergyAt(const BlockFamily& family, const Eigen::VectorXd& x) {
-  double energy = 0.0;
-  EXPECT_EQ(family.Evaluate(x, 0, family.size(), &energy, nullptr), Status::kOk);
-  return energy;
-}
-
-Eigen::VectorXd GradientAt(const BlockFamily& family, const Eigen::VectorXd& x) {
-  double energy = 0.0;
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
-  EXPECT_EQ(family.Evaluate(x, 0, family.size(), &energy, &gradient), Status::kOk);
-  return gradient;
 }
 
 std::vector<std::shared_ptr<const ceres::LossFunction>> Losses() {
@@ -124,7 +111,7 @@ TEST(CostFunctionFamily, GradientIsThatOfTheEnergyWithEachLoss) {
       const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(x.size(), i);
       const double difference =
           (EnergyAt(*family, x + step) - EnergyAt(*family, x - step)) / (2.0 * kStep);
-      EXPECT_NEAR(gradient[i], difference, kDifferenceTolerance) << i;
+      EXPECT_NEAR(gradient[i], difference, kFunctorsTolerance) << i;
     }
   }
 }
@@ -143,7 +130,7 @@ TEST(CostFunctionFamily, JacobianAndResidualsStandWhereTheirBlocksDo) {
     ASSERT_EQ(family->Residuals(x + step, &after), Status::kOk);
     ASSERT_EQ(family->Residuals(x - step, &before), Status::kOk);
     const Eigen::VectorXd difference = (after - before) / (2.0 * kStep);
-    EXPECT_LT((jacobian.col(i).bottomRows(6) - difference).norm(), kDifferenceTolerance) << i;
+    EXPECT_LT((jacobian.col(i).bottomRows(6) - difference).norm(), kFunctorsTolerance) << i;
   }
 }
 
@@ -206,7 +193,7 @@ TEST(CostFunctionFamily, HessianProductsHoldTwoThirdsOfTheDigits) {
     Eigen::VectorXd product = Eigen::Vector3d(1.0, 0.0, 1.0);
     ASSERT_EQ(family.AddHessianTimes(x, direction, &product), Status::kOk);
     const double expected = 0.5 * (12.0 * std::pow(0.9, 2) + 30.0 * std::pow(0.9, 4)) * length;
-    EXPECT_NEAR(product[1] / length, expected / length, kDifferenceTolerance) << length;
+    EXPECT_NEAR(product[1] / length, expected / length, kFunctorsTolerance) << length;
     EXPECT_EQ(product[0], 1.0);
     EXPECT_EQ(product[2], 1.0);
   }
@@ -221,7 +208,7 @@ TEST(CostFunctionFamily, HessianProductsKeepTheirDigitsForLargeVariables) {
                                    Eigen::VectorXd::Constant(1, 2.0), &product),
             Status::kOk);
   const double expected = 2.0 * (12.0 * std::pow(x, 2) + 30.0 * std::pow(x, 4));
-  EXPECT_NEAR(product[0] / expected, 1.0, kDifferenceTolerance);
+  EXPECT_NEAR(product[0] / expected, 1.0, kFunctorsTolerance);
 }
 
 TEST(CostFunctionFamily, HessianOfADirectionOfZeroIsZero) {
@@ -256,9 +243,9 @@ TEST(CostFunctionFamily, NoLossHidesAResidualThatIsNoNumber) {
 TEST(CostFunctionFamilyDeathTest, RefusesBlocksThatDoNotFit) {
   CostFunctionFamily family;
   EXPECT_EQ(family.num_residuals(), 0);
-  family.AddBlock(MakeCurved(0.0), {0, 2});
-  EXPECT_DEATH(family.AddBlock(MakeCurved(0.0), {0, 1}), "overlap");
-  EXPECT_DEATH(family.AddBlock(MakeCurved(0.0), {0}), "offsets");
+  family.AddBlock(MakeCurvedPair(0.0), {0, 2});
+  EXPECT_DEATH(family.AddBlock(MakeCurvedPair(0.0), {0, 1}), "overlap");
+  EXPECT_DEATH(family.AddBlock(MakeCurvedPair(0.0), {0}), "offsets");
   EXPECT_DEATH(
       family.AddBlock(std::make_unique<ceres::AutoDiffCostFunction<Quadratic, 2, 2>>(new Quadratic),
                       {-1}),

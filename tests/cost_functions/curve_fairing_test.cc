@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-std::unique_ptr<BlockFamily> Make(const FitSetting& setting, const std::string& options,
-                                  std::string* error) {
+std::unique_ptr<BlockFamily> MakeCurveFairing(const FitSetting& setting, const std::string& options,
+                                              std::string* error) {
   NameSpec spec;
   const Term* term = nullptr;
   OptionValues values;
@@ -47,7 +47,7 @@ Eigen::VectorXd PolynomialCurve(const BsplineBasis& basis,
   return x;
 }
 
-struct Case {
+struct FairedPolynomial {
   int degree = 3;
   int spans = 1;
   double begin = 0.0, end = 1.0;
@@ -55,7 +55,7 @@ struct Case {
 };
 
 /// The term's energy of a polynomial curve on uniform knots, the data of size 1.
-double EnergyOf(const Case& fit, const std::vector<std::vector<double>>& coordinates) {
+double EnergyOf(const FairedPolynomial& fit, const std::vector<std::vector<double>>& coordinates) {
   const BsplineBasis basis = BasisOf(fit.degree, false,
                                      UniformKnots(fit.degree, fit.degree + fit.spans,
                                                   EndKnots::kEndInterpolating, fit.begin, fit.end));
@@ -63,7 +63,7 @@ double EnergyOf(const Case& fit, const std::vector<std::vector<double>>& coordin
   setting.basis = &basis;
   setting.dimension = static_cast<int>(coordinates.size());
   std::string error;
-  const auto family = Make(setting, fit.options, &error);
+  const auto family = MakeCurveFairing(setting, fit.options, &error);
   EXPECT_NE(family, nullptr) << error;
   return EnergyAt(*family, PolynomialCurve(basis, coordinates));
 }
@@ -91,7 +91,7 @@ TEST(CurveFairing, OfAParabolaIsItsClosedForm) {
     for (const int degree : {3, 4, 7}) {
       // Many points of the rule leave rounding only: of second and third differences of control
       // points, which grow with the number of spans.
-      const Case fit = {degree, 4, kBegin, kEnd, Measure(variation) + "/points=24"};
+      const FairedPolynomial fit = {degree, 4, kBegin, kEnd, Measure(variation) + "/points=24"};
       EXPECT_NEAR(EnergyOf(fit, {{0, 1}, {0, 0, 0.5}}), Parabola(variation), 1e-11)
           << degree << variation;
     }
@@ -104,8 +104,8 @@ TEST(CurveFairing, OfTheRuleConvergesWithTwiceTheNumberOfItsPoints) {
   for (const bool variation : {false, true}) {
     for (const int points : {1, 2, 3, 4}) {
       const auto error = [&](int spans) {
-        const Case fit = {3, spans, kBegin, kEnd,
-                          Measure(variation) + "/points=" + std::to_string(points)};
+        const FairedPolynomial fit = {3, spans, kBegin, kEnd,
+                                      Measure(variation) + "/points=" + std::to_string(points)};
         return std::abs(EnergyOf(fit, {{0, 1}, {0, 0, 0.5}}) - Parabola(variation));
       };
       // Spans short enough for the order to show, and not so short that rounding does.
@@ -177,8 +177,8 @@ TEST(CurveFairing, OfACircleIsTwoPiOverItsRadiusAndCurvatureDoesNotVary) {
   for (const int dimension : {2, 3}) {
     for (const double radius : {0.3, 1.7}) {
       const NearCircle circle(dimension, radius);
-      const auto bending = Make(circle.setting, "", &error);
-      const auto variation = Make(circle.setting, "/measure=variation", &error);
+      const auto bending = MakeCurveFairing(circle.setting, "", &error);
+      const auto variation = MakeCurveFairing(circle.setting, "/measure=variation", &error);
       ASSERT_NE(bending, nullptr) << error;
       // 32^-10 of other frequencies, 31^2 times as much in the curvature: 1e-12.
       EXPECT_NEAR(EnergyAt(*bending, circle.x) * radius, 2.0 * kPi, 1e-10);
@@ -194,7 +194,7 @@ TEST(CurveFairing, KeepsTheLawsOfRotationAndScale) {
   for (const bool variation : {false, true}) {
     const ExampleFit fit(MakeBasis({3, EndKnots::kPeriodic, false}, 12, &random), 3, 9, false,
                          &random);
-    const auto family = Make(fit.setting, Measure(variation), &error);
+    const auto family = MakeCurveFairing(fit.setting, Measure(variation), &error);
     const Eigen::VectorXd x = fit.RoundVariables(&random);
     const double energy = EnergyAt(*family, x);
     const auto moved = [&](const Eigen::Matrix3d& matrix) {
@@ -225,10 +225,10 @@ TEST(CurveFairing, TimesThePowerOfTheDatasSizeIsASquaredLength) {
   for (const bool variation : {false, true}) {
     const int power = variation ? 5 : 3;
     const std::string options = Measure(variation) + "/points=24";
-    EXPECT_NEAR(EnergyAt(*Make(setting, options, &error), x),
+    EXPECT_NEAR(EnergyAt(*MakeCurveFairing(setting, options, &error), x),
                 std::pow(0.75, power) * Parabola(variation), 1e-11);
     // In the user's units, where lengths are 4 times as large and E 16 times: the integral itself.
-    EXPECT_NEAR(16.0 * EnergyAt(*Make(setting, options + "/units=source", &error), x),
+    EXPECT_NEAR(16.0 * EnergyAt(*MakeCurveFairing(setting, options + "/units=source", &error), x),
                 Parabola(variation) / std::pow(4.0, power - 2), 1e-11);
   }
 }
@@ -240,7 +240,7 @@ TEST(CurveFairing, HasNoNumberWhereTheCurveStandsStill) {
   setting.basis = &basis;
   setting.dimension = 2;
   std::string error;
-  const auto family = Make(setting, "", &error);
+  const auto family = MakeCurveFairing(setting, "", &error);
   const Eigen::VectorXd point = Eigen::VectorXd::Constant(12, 0.25);
   double energy = 0.0;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(12);
@@ -257,7 +257,7 @@ TEST(CurveFairing, RefusesCurvesWithoutCurvature) {
     FitSetting setting;
     setting.basis = &basis;
     setting.dimension = dimension;
-    EXPECT_EQ(Make(setting, options, &error), nullptr);
+    EXPECT_EQ(MakeCurveFairing(setting, options, &error), nullptr);
     return error;
   };
   EXPECT_EQ(why(3, false, 6, 1, ""),

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
@@ -16,7 +17,7 @@ using Jet = ceres::Jet<double, 2>;
 using Second = DirectionalDual<Jet>;
 
 /// A function of two variables that uses one operation; defined for first > second > 0.
-struct Case {
+struct Operation {
   std::string name;
   double (*value)(double, double);
   Dual (*dual)(Dual, Dual);
@@ -25,12 +26,12 @@ struct Case {
 
 // One generic lambda for the three scalars.
 template <typename Function>
-Case MakeCase(const std::string& name, Function function) {
+Operation MakeOperation(const std::string& name, Function function) {
   return {name, function, function, function};
 }
 
 // The other argument stands in every function, so that the mixed derivatives do not vanish.
-std::vector<Case> AllCases() {
+std::vector<Operation> AllOperations() {
   // Unqualified, found for the double in std and for the others beside their types.
   using std::abs;
   using std::atan2;
@@ -41,35 +42,35 @@ std::vector<Case> AllCases() {
   using std::sin;
   using std::sqrt;
   return {
-      MakeCase("Sum", [](auto x, auto y) { return x * x + y * y * y; }),
-      MakeCase("Difference", [](auto x, auto y) { return x * x * x - 2.0 * x * y - 0.5; }),
-      MakeCase("Negation", [](auto x, auto y) { return -(x * y * y); }),
-      MakeCase("Product", [](auto x, auto y) { return x * y * x; }),
-      MakeCase("Quotient", [](auto x, auto y) { return x / (y * y) + 1.0 / x; }),
-      MakeCase("InPlace",
-               [](auto x, auto y) {
-                 auto z = x;
-                 z += y * y;
-                 z *= x;
-                 z -= 2.0 * y;
-                 z /= y;
-                 return z;
-               }),
-      MakeCase("Sqrt", [](auto x, auto y) { return sqrt(x * y + x); }),
-      MakeCase("Exp", [](auto x, auto y) { return exp(0.5 * x * y); }),
-      MakeCase("Log", [](auto x, auto y) { return log(x * x + y); }),
-      MakeCase("Sin", [](auto x, auto y) { return sin(x * y); }),
-      MakeCase("Cos", [](auto x, auto y) { return cos(x * y); }),
-      MakeCase("Atan2", [](auto x, auto y) { return atan2(x * y, x - y); }),
-      MakeCase("Pow", [](auto x, auto y) { return pow(x * y, 2.5); }),
-      MakeCase("AbsOfNegative", [](auto x, auto y) { return abs(y * y * y - x * x * x); }),
-      MakeCase("AbsOfPositive", [](auto x, auto y) { return abs(x * x * x - y * y * y); }),
+      MakeOperation("Sum", [](auto x, auto y) { return x * x + y * y * y; }),
+      MakeOperation("Difference", [](auto x, auto y) { return x * x * x - 2.0 * x * y - 0.5; }),
+      MakeOperation("Negation", [](auto x, auto y) { return -(x * y * y); }),
+      MakeOperation("Product", [](auto x, auto y) { return x * y * x; }),
+      MakeOperation("Quotient", [](auto x, auto y) { return x / (y * y) + 1.0 / x; }),
+      MakeOperation("InPlace",
+                    [](auto x, auto y) {
+                      auto z = x;
+                      z += y * y;
+                      z *= x;
+                      z -= 2.0 * y;
+                      z /= y;
+                      return z;
+                    }),
+      MakeOperation("Sqrt", [](auto x, auto y) { return sqrt(x * y + x); }),
+      MakeOperation("Exp", [](auto x, auto y) { return exp(0.5 * x * y); }),
+      MakeOperation("Log", [](auto x, auto y) { return log(x * x + y); }),
+      MakeOperation("Sin", [](auto x, auto y) { return sin(x * y); }),
+      MakeOperation("Cos", [](auto x, auto y) { return cos(x * y); }),
+      MakeOperation("Atan2", [](auto x, auto y) { return atan2(x * y, x - y); }),
+      MakeOperation("Pow", [](auto x, auto y) { return pow(x * y, 2.5); }),
+      MakeOperation("AbsOfNegative", [](auto x, auto y) { return abs(y * y * y - x * x * x); }),
+      MakeOperation("AbsOfPositive", [](auto x, auto y) { return abs(x * x * x - y * y * y); }),
   };
 }
 
-void PrintTo(const Case& each, std::ostream* stream) { *stream << each.name; }
+void PrintTo(const Operation& each, std::ostream* stream) { *stream << each.name; }
 
-class DualOperation : public ::testing::TestWithParam<Case> {
+class DualOperation : public ::testing::TestWithParam<Operation> {
  protected:
   // Away from the diagonal and from each other.
   static constexpr double kX = 1.3;
@@ -112,7 +113,7 @@ TEST_P(DualOperation, OverJetsGivesTheHessianTimesTheDirection) {
               {kY + h * kDirection[1], axis == 1 ? 1.0 : 0.0})
         .slope;
   };
-  const double step = std::cbrt(std::numeric_limits<double>::epsilon());
+  const double step = std::cbrt(kEpsilon);
   const double tolerance = 1000 * step * step;  // fourth derivatives are below 1000
   for (int axis = 0; axis < 2; ++axis) {
     EXPECT_NEAR(result.value.v[axis], derivative(axis, 0.0), 1e-13);
@@ -124,7 +125,7 @@ TEST_P(DualOperation, OverJetsGivesTheHessianTimesTheDirection) {
               1e-13);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DualOperation, ::testing::ValuesIn(AllCases()),
+INSTANTIATE_TEST_SUITE_P(All, DualOperation, ::testing::ValuesIn(AllOperations()),
                          [](const auto& each) { return each.param.name; });
 
 TEST(DirectionalDual, OfANumberHasNoSlope) {

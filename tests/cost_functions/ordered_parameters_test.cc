@@ -7,10 +7,10 @@
 #include <limits>
 #include <random>
 
+#include "tests/roundoff.h"
+
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 Eigen::VectorXd Vector(std::initializer_list<double> values) {
   return Eigen::Map<const Eigen::VectorXd>(values.begin(),
@@ -57,7 +57,7 @@ TEST(OrderedParameters, MayBeNoneAtAll) {
 
 TEST(OrderedParameters, PoolsThoseThatPassEachOther) {
   const OrderedParameters order(Vector({0.2, 0.6, 0.4, 0.9}), 0.0);
-  EXPECT_LT((order.t - Vector({0.2, 0.5, 0.5, 0.9})).norm(), 4 * kEps);
+  EXPECT_LT((order.t - Vector({0.2, 0.5, 0.5, 0.9})).norm(), 4 * kEpsilon);
   EXPECT_EQ(order.block_begins, (std::vector<int>{0, 1, 3, 4}));
 }
 
@@ -65,26 +65,26 @@ TEST(OrderedParameters, AreTheNearestOrderedOnes) {
   std::mt19937 random(71);
   for (int size = 1; size <= 12; ++size) {
     const Eigen::VectorXd s = RandomVector(size, &random);
-    EXPECT_LT((OrderedParameters(s, 0.0).t - MinMax(s)).norm(), 64 * kEps);
+    EXPECT_LT((OrderedParameters(s, 0.0).t - MinMax(s)).norm(), 64 * kEpsilon);
   }
 }
 
 TEST(OrderedParameters, PoolTheLastAndTheFirstAroundTheSeam) {
   // The last two pool to 1.25, a quarter after the first: (0 + 2 / 4) / 3 = 1 / 6 of three.
   const OrderedParameters order(Vector({0.0, 0.4, 1.3, 1.2}), 1.0);
-  EXPECT_LT((order.t - Vector({1.0 / 6, 0.4, 7.0 / 6, 7.0 / 6})).norm(), 4 * kEps);
+  EXPECT_LT((order.t - Vector({1.0 / 6, 0.4, 7.0 / 6, 7.0 / 6})).norm(), 4 * kEpsilon);
   EXPECT_EQ(order.num_cut, 2);
   EXPECT_EQ(order.BlockOf(), (std::vector<int>{0, 1, 0, 0}));
   // The first then passes the second: (0 + 0.1 + 2 / 4) / 4.
   const OrderedParameters on(Vector({0.0, 0.1, 1.3, 1.2}), 1.0);
-  EXPECT_LT((on.t - Vector({0.15, 0.15, 1.15, 1.15})).norm(), 4 * kEps);
+  EXPECT_LT((on.t - Vector({0.15, 0.15, 1.15, 1.15})).norm(), 4 * kEpsilon);
   EXPECT_EQ(on.BlockOf(), (std::vector<int>{0, 0, 0, 0}));
 }
 
 TEST(OrderedParameters, StayWhereTheyAreAtTheSeam) {
   for (const double begin : {0.0, 0.3, -17.7}) {
-    const OrderedParameters order(Vector({begin, begin + 0.4, begin + 1.0, begin + 1.0 + 4 * kEps}),
-                                  1.0);
+    const OrderedParameters order(
+        Vector({begin, begin + 0.4, begin + 1.0, begin + 1.0 + 4 * kEpsilon}), 1.0);
     EXPECT_EQ(order.t, Vector({begin, begin + 0.4, begin + 1.0, begin + 1.0}));
     EXPECT_EQ(order.num_cut, 2);
     EXPECT_EQ(OrderedParameters(order.t, 1.0).t, order.t);
@@ -117,7 +117,7 @@ TEST(OrderedParameters, AreTheNearestOrderedOnesWithinAPeriod) {
       Eigen::VectorXd s = 0.2 * RandomVector(size, &random);
       s += Eigen::VectorXd::LinSpaced(size, 0.0, 0.5 + 0.02 * k);
       const OrderedParameters order(s, 1.0);
-      EXPECT_LT((order.t - NearestAround(s, 1.0)).norm(), 64 * kEps) << size;
+      EXPECT_LT((order.t - NearestAround(s, 1.0)).norm(), 64 * kEpsilon) << size;
       across += order.num_cut > 0 ? 1 : 0;
     }
   }
@@ -133,9 +133,9 @@ TEST(OrderedParameters, HaveTheDerivativeOfDifferences) {
     const Eigen::VectorXd difference =
         (OrderedParameters(s + kStep * v, period).t - OrderedParameters(s - kStep * v, period).t) /
         (2.0 * kStep);
-    EXPECT_LT((order.Apply(v) - difference).norm(), 100 * kEps / kStep);
+    EXPECT_LT((order.Apply(v) - difference).norm(), 100 * kEpsilon / kStep);
     const Eigen::VectorXd w = RandomVector(9, &random);
-    EXPECT_NEAR(order.Apply(v).dot(w), v.dot(order.Apply(w)), 64 * kEps);
+    EXPECT_NEAR(order.Apply(v).dot(w), v.dot(order.Apply(w)), 64 * kEpsilon);
   }
 }
 

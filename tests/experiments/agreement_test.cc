@@ -2,17 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "solvers/solver_registry.h"
 #include "tests/experiments/outlines.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 using ::testing::IsEmpty;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Of the data's size: what all solvers agree to in every control point.
 constexpr double kAgreement = 1e-8;
 
@@ -36,10 +35,6 @@ struct Change {
   /// Of control points: what the change makes of an answer.
   std::function<Points(const Points&)> answer;
 };
-
-double SizeOf(const Points& points) {
-  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
-}
 
 Points Rotated(const Points& points) {
   Eigen::Matrix2d rotation;
@@ -292,7 +287,7 @@ TEST_P(Agreement, EnergyAlongALineIsTheExactDifference) {
     const double change = step * (slope + 0.5 * step * curvature);
     const auto exact = static_cast<double>(ExactDifference(*problem, x, step * direction));
     // The gradient carries the rounding of residuals, eps times the data, not that of E.
-    const double rounding = 64 * kEps * std::sqrt(static_cast<double>(x.size()));
+    const double rounding = 64 * kEpsilon * std::sqrt(static_cast<double>(x.size()));
     EXPECT_NEAR(change, exact, rounding * step * direction.norm()) << step;
     EXPECT_NEAR(change / exact, 1.0, 1e-6) << step;
     if (step > 1e-13) continue;

@@ -9,29 +9,12 @@
 #include "cost_functions/options.h"
 #include "experiments/anderson_paper_growth.h"
 #include "experiments/anderson_paper_runs.h"
+#include "tests/experiments/hand_made_tables.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr ClaimVerdict kHolds = ClaimVerdict::kHolds;
-constexpr ClaimVerdict kInPart = ClaimVerdict::kInPart;
-constexpr ClaimVerdict kDoesNotHold = ClaimVerdict::kDoesNotHold;
-constexpr ClaimVerdict kUndecided = ClaimVerdict::kUndecided;
-
-using Cells = std::vector<std::pair<std::string, std::string>>;
-
-/// A row of `table` with these cells, the others empty.
-void Add(const Cells& cells, CsvTable* table) {
-  table->AddRow(std::vector<std::string>(table->columns().size()));
-  for (const auto& [column, text] : cells) table->Set(table->num_rows() - 1, column, text);
-}
-
-ClaimVerdict Verdict(const Experiment& experiment, const ExperimentTables& tables,
-                     std::size_t claim = 0) {
-  return experiment.claims.at(claim).judge(tables).verdict;
-}
 
 /// All that is not said of a method's runs on an example.
 struct Method {
@@ -49,15 +32,15 @@ ExperimentTables Examples(const Method& lbfgs, const Method& anderson, const Met
   tables["traces"] = CsvTable(FreeTraceColumns());
   for (const std::string& example : PaperExampleNames()) {
     const auto row = [&](const char* solver, const Method& method) {
-      Add({{"example", example},
-           {"solver", solver},
-           {"iterations", "100"},
-           {"projections", method.projections},
-           {"polished_energy", method.polished},
-           {"iterations_to_1e-6", method.iterations_to_gap},
-           {"seconds_to_1e-6", method.seconds_to_gap},
-           {"rejected", method.rejected}},
-          &table);
+      AddCells({{"example", example},
+                {"solver", solver},
+                {"iterations", "100"},
+                {"projections", method.projections},
+                {"polished_energy", method.polished},
+                {"iterations_to_1e-6", method.iterations_to_gap},
+                {"seconds_to_1e-6", method.seconds_to_gap},
+                {"rejected", method.rejected}},
+               &table);
     };
     row(kJointLbfgs, lbfgs);
     row(kAndersonPdm, example == PaperExampleNames().back() ? last : anderson);
@@ -101,17 +84,17 @@ TEST(AndersonPaper, JudgesWhichIsFasterWhereBothEndInOneBasin) {
   const Method elsewhere = {"2", "1", "0.001"};
   const Method never = {"1", "nan", "nan"};
   const Method fewer_but_dearer = {"1", "50", "0.2"};
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, faster, faster)), kHolds);
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, faster, slower)), kInPart);
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, fewer_but_dearer, fewer_but_dearer)), kInPart);
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, slower, slower)), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, never, never)), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, Examples(never, faster, faster)), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, faster, faster)), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, faster, slower)), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, fewer_but_dearer, fewer_but_dearer)), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, slower, slower)), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, never, never)), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, Examples(never, faster, faster)), kHolds);
   // Another minimum says nothing of speed, nor do two that do not get there.
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, faster, elsewhere)), kHolds);
-  EXPECT_EQ(Verdict(experiment, Examples(lbfgs, elsewhere, elsewhere)), kUndecided);
-  EXPECT_EQ(Verdict(experiment, Examples(never, never, never)), kUndecided);
-  EXPECT_EQ(Verdict(experiment, WithoutLastRow(Examples(lbfgs, faster, faster))), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, faster, elsewhere)), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, elsewhere, elsewhere)), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, Examples(never, never, never)), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, WithoutLastRow(Examples(lbfgs, faster, faster))), kUndecided);
 }
 
 /// Both methods' errors at four times, the same on all examples but the last.
@@ -121,12 +104,12 @@ ExperimentTables Traces(const std::vector<double>& lbfgs, const std::vector<doub
   for (const std::string& example : PaperExampleNames()) {
     const auto rows = [&](const char* solver, const std::vector<double>& errors) {
       for (std::size_t k = 0; k < errors.size(); ++k) {
-        Add({{"example", example},
-             {"solver", solver},
-             {"iteration", std::to_string(k)},
-             {"seconds", NumberText(static_cast<double>(k + 1))},
-             {"foot_energy", NumberText(errors[k])}},
-            &tables["traces"]);
+        AddCells({{"example", example},
+                  {"solver", solver},
+                  {"iteration", std::to_string(k)},
+                  {"seconds", NumberText(static_cast<double>(k + 1))},
+                  {"foot_energy", NumberText(errors[k])}},
+                 &tables["traces"]);
       }
     };
     rows(kJointLbfgs, lbfgs);
@@ -143,13 +126,13 @@ TEST(AndersonPaper, JudgesErrorsAtEqualTimes) {
   // Ahead from the third of four times on: log(4 / 3) of log(4 / 2).
   const std::vector<double> late = {9.0, 5.0, 1.0, 1.0};
   const std::vector<double> early = {9.0, 3.0, 3.0, 1.0};
-  EXPECT_EQ(Verdict(experiment, Traces(middle, below, below), 1), kHolds);
-  EXPECT_EQ(Verdict(experiment, Traces(middle, below, late), 1), kInPart);
-  EXPECT_EQ(Verdict(experiment, Traces(middle, early, early), 1), kInPart);
-  EXPECT_EQ(Verdict(experiment, Traces(middle, above, late), 1), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, Traces(middle, below, {}), 1), kUndecided);
-  EXPECT_EQ(Verdict(experiment, Traces(middle, below, below, {"2"}), 1), kUndecided);
-  EXPECT_EQ(Verdict(experiment, WithoutLastRow(Traces(middle, below, below)), 1), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, Traces(middle, below, below), 1), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, Traces(middle, below, late), 1), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, Traces(middle, early, early), 1), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, Traces(middle, above, late), 1), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, Traces(middle, below, {}), 1), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, Traces(middle, below, below, {"2"}), 1), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, WithoutLastRow(Traces(middle, below, below)), 1), kUndecided);
 }
 
 TEST(AndersonPaper, JudgesWhetherBothStartAlike) {
@@ -158,10 +141,10 @@ TEST(AndersonPaper, JudgesWhetherBothStartAlike) {
   const std::vector<double> near = {9.0, 4.1, 4.0, 11.9, 5.0, 4.0, 0.1};
   const std::vector<double> far = {9.0, 8.0, 7.0, 6.0, 5.0, 1.9, 3.0};
   const std::vector<double> too_short = {9.0, 8.0, 7.0, 6.0, 5.0};
-  EXPECT_EQ(Verdict(experiment, Traces(errors, near, near), 2), kHolds);
-  EXPECT_EQ(Verdict(experiment, Traces(errors, near, far), 2), kInPart);
-  EXPECT_EQ(Verdict(experiment, Traces(errors, far, far), 2), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, Traces(errors, near, too_short), 2), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, Traces(errors, near, near), 2), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, Traces(errors, near, far), 2), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, Traces(errors, far, far), 2), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, Traces(errors, near, too_short), 2), kUndecided);
 }
 
 TEST(AndersonPaper, JudgesProjectionsAndRejections) {
@@ -170,10 +153,10 @@ TEST(AndersonPaper, JudgesProjectionsAndRejections) {
   const Method often = {"1", "100", "0.1", "100", "0.5"};
   const Method seldom = {"1", "100", "0.1", "99", "0.49"};
   for (const std::size_t claim : {3U, 5U}) {
-    EXPECT_EQ(Verdict(experiment, Examples(lbfgs, seldom, seldom), claim), kHolds);
-    EXPECT_EQ(Verdict(experiment, Examples(lbfgs, seldom, often), claim), kInPart);
-    EXPECT_EQ(Verdict(experiment, Examples(lbfgs, often, often), claim), kDoesNotHold);
-    EXPECT_EQ(Verdict(experiment, WithoutLastRow(Examples(lbfgs, often, often)), claim),
+    EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, seldom, seldom), claim), kHolds);
+    EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, seldom, often), claim), kInPart);
+    EXPECT_EQ(VerdictOn(experiment, Examples(lbfgs, often, often), claim), kDoesNotHold);
+    EXPECT_EQ(VerdictOn(experiment, WithoutLastRow(Examples(lbfgs, often, often)), claim),
               kUndecided);
   }
 }
@@ -184,18 +167,18 @@ TEST(AndersonPaper, JudgesWhetherUndampedTdmDiverges) {
     ExperimentTables made;
     CsvTable& table = made[""] = CsvTable(FreeRunColumns());
     for (const std::string& example : PaperExampleNames()) {
-      Add({{"example", example},
-           {"solver", kUndampedTdm},
-           {"start_energy", "2"},
-           {"foot_energy", example == PaperExampleNames().back() ? last : first}},
-          &table);
+      AddCells({{"example", example},
+                {"solver", kUndampedTdm},
+                {"start_energy", "2"},
+                {"foot_energy", example == PaperExampleNames().back() ? last : first}},
+               &table);
     }
     return made;
   };
-  EXPECT_EQ(Verdict(experiment, tables("3", "nan"), 4), kHolds);
-  EXPECT_EQ(Verdict(experiment, tables("3", "2"), 4), kInPart);
-  EXPECT_EQ(Verdict(experiment, tables("1", "2"), 4), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, WithoutLastRow(tables("3", "3")), 4), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, tables("3", "nan"), 4), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, tables("3", "2"), 4), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, tables("1", "2"), 4), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, WithoutLastRow(tables("3", "3")), 4), kUndecided);
 }
 
 /// `tables` of the paper's examples with the rows that the last one has in `from` given to ours.
@@ -208,7 +191,7 @@ ExperimentTables WithOurExample(ExperimentTables tables, const ExperimentTables&
       for (const std::string& column : rows.columns()) {
         cells.emplace_back(column, column == "example" ? ours : rows.Text(row, column));
       }
-      Add(cells, &table);
+      AddCells(cells, &table);
     }
   }
   return tables;
@@ -271,11 +254,11 @@ ExperimentTables WindowTables(const Windows& first, const Windows& last) {
   for (const std::string& example : PaperExampleNames()) {
     const Windows& on = example == PaperExampleNames().back() ? last : first;
     for (int window = 1; window <= 8; ++window) {
-      Add({{"window", std::to_string(window)},
-           {"example", example},
-           {"polished_energy", window > 6 ? on.polished_of_large : "1"},
-           {"iterations_to_1e-6", window > 6 ? on.large : on.small}},
-          &table);
+      AddCells({{"window", std::to_string(window)},
+                {"example", example},
+                {"polished_energy", window > 6 ? on.polished_of_large : "1"},
+                {"iterations_to_1e-6", window > 6 ? on.large : on.small}},
+               &table);
     }
   }
   return tables;
@@ -283,13 +266,13 @@ ExperimentTables WindowTables(const Windows& first, const Windows& last) {
 
 TEST(AndersonPaper, JudgesTheWindow) {
   const Experiment experiment = AndersonPaperWindow();
-  EXPECT_EQ(Verdict(experiment, WindowTables({"100", "80"}, {"100", "200"})), kHolds);
-  EXPECT_EQ(Verdict(experiment, WindowTables({"100", "nan"}, {"100", "100"})), kHolds);
-  EXPECT_EQ(Verdict(experiment, WindowTables({"100", "90"}, {"100", "79"})), kInPart);
-  EXPECT_EQ(Verdict(experiment, WindowTables({"100", "70"}, {"nan", "100"})), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, WindowTables({"100", "10", "2"}, {"100", "100"})), kHolds);
-  EXPECT_EQ(Verdict(experiment, WindowTables({"100", "10", "2"}, {"nan", "nan"})), kUndecided);
-  EXPECT_EQ(Verdict(experiment, WithoutLastRow(WindowTables({"100", "90"}, {"100", "90"}))),
+  EXPECT_EQ(VerdictOn(experiment, WindowTables({"100", "80"}, {"100", "200"})), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, WindowTables({"100", "nan"}, {"100", "100"})), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, WindowTables({"100", "90"}, {"100", "79"})), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, WindowTables({"100", "70"}, {"nan", "100"})), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, WindowTables({"100", "10", "2"}, {"100", "100"})), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, WindowTables({"100", "10", "2"}, {"nan", "nan"})), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, WithoutLastRow(WindowTables({"100", "90"}, {"100", "90"}))),
             kUndecided);
 }
 
@@ -302,10 +285,10 @@ ExperimentTables Growth(const std::string& size, double power, const char* other
     const double value = 8.0 * std::pow(2.0, k);
     for (const char* solver : {kJointLbfgs, kAndersonPdm, "pdm", "tdm", "sdm"}) {
       const double grows = std::string(solver) == other ? other_power : power;
-      Add({{size, NumberText(value)},
-           {"solver", solver},
-           {"seconds_per_iteration", NumberText(1e-6 * std::pow(value, grows))}},
-          &table);
+      AddCells({{size, NumberText(value)},
+                {"solver", solver},
+                {"seconds_per_iteration", NumberText(1e-6 * std::pow(value, grows))}},
+               &table);
     }
   }
   return tables;
@@ -315,14 +298,14 @@ TEST(AndersonPaper, JudgesTheCostPerIteration) {
   const std::pair<const char*, Experiment> experiments[] = {
       {"points", AndersonPaperPoints()}, {"control_points", AndersonPaperControlPoints()}};
   for (const auto& [size, experiment] : experiments) {
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.1, "pdm", 3.0)), kHolds);
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.1, kAndersonPdm, 1.2)), kInPart);
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.2, "pdm", 1.0)), kDoesNotHold);
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.0, "pdm", 1.0, 1)), kUndecided);
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.6, kJointLbfgs, 1.0), 1), kHolds);
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.6, "sdm", 1.4), 1), kInPart);
-    EXPECT_EQ(Verdict(experiment, Growth(size, 1.0, kJointLbfgs, 3.0), 1), kDoesNotHold);
-    EXPECT_EQ(Verdict(experiment, {{"", CsvTable(GrowthColumns())}}, 1), kUndecided);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.1, "pdm", 3.0)), kHolds);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.1, kAndersonPdm, 1.2)), kInPart);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.2, "pdm", 1.0)), kDoesNotHold);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.0, "pdm", 1.0, 1)), kUndecided);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.6, kJointLbfgs, 1.0), 1), kHolds);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.6, "sdm", 1.4), 1), kInPart);
+    EXPECT_EQ(VerdictOn(experiment, Growth(size, 1.0, kJointLbfgs, 3.0), 1), kDoesNotHold);
+    EXPECT_EQ(VerdictOn(experiment, {{"", CsvTable(GrowthColumns())}}, 1), kUndecided);
   }
 }
 
@@ -334,12 +317,12 @@ ExperimentTables Starts(const char* polished, const char* iterations, bool of_lb
     for (const char* solver : {kJointLbfgs, kAndersonPdm}) {
       for (const std::string start : {"circle", "ellipse", "disturbed circle"}) {
         const bool other = start == "disturbed circle" && (of_lbfgs_too || solver == kAndersonPdm);
-        Add({{"example", example},
-             {"solver", solver},
-             {"start", start},
-             {"polished_energy", other ? polished : "1"},
-             {"iterations_to_1e-6", other ? iterations : "100"}},
-            &table);
+        AddCells({{"example", example},
+                  {"solver", solver},
+                  {"start", start},
+                  {"polished_energy", other ? polished : "1"},
+                  {"iterations_to_1e-6", other ? iterations : "100"}},
+                 &table);
       }
     }
   }
@@ -352,9 +335,9 @@ TEST(AndersonPaper, TellsWindowsAndStartsOfOurExampleWithoutCountingThem) {
        WindowTables({"100", "10"}, {"100", "10"})},
       {AndersonPaperStarts(), Starts("1", "100", true), Starts("2", "100", true)}};
   for (const auto& [experiment, paper, other] : cases) {
-    ASSERT_EQ(Verdict(experiment, paper), kHolds);
+    ASSERT_EQ(VerdictOn(experiment, paper), kHolds);
     const ExperimentTables both = WithOurExample(paper, other);
-    EXPECT_EQ(Verdict(experiment, both), kHolds) << experiment.name;
+    EXPECT_EQ(VerdictOn(experiment, both), kHolds) << experiment.name;
     EXPECT_THAT(experiment.claims[0].judge(both).because,
                 HasSubstr("crawling (ours), not counted"));
   }
@@ -362,26 +345,26 @@ TEST(AndersonPaper, TellsWindowsAndStartsOfOurExampleWithoutCountingThem) {
 
 TEST(AndersonPaper, JudgesTheStarts) {
   const Experiment experiment = AndersonPaperStarts();
-  EXPECT_EQ(Verdict(experiment, Starts("1.0009", "200", true)), kHolds);
-  EXPECT_EQ(Verdict(experiment, Starts("1.002", "100", false)), kInPart);
-  EXPECT_EQ(Verdict(experiment, Starts("1", "201", true)), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, Starts("1", "nan", true)), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, Starts("2", "100", true)), kDoesNotHold);
-  EXPECT_EQ(Verdict(experiment, WithoutLastRow(Starts("1", "100", true))), kUndecided);
+  EXPECT_EQ(VerdictOn(experiment, Starts("1.0009", "200", true)), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, Starts("1.002", "100", false)), kInPart);
+  EXPECT_EQ(VerdictOn(experiment, Starts("1", "201", true)), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, Starts("1", "nan", true)), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, Starts("2", "100", true)), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, WithoutLastRow(Starts("1", "100", true))), kUndecided);
 }
 
 TEST(AndersonPaper, ShowsWhatIsLeftOfTablesWithRowsTakenOut) {
   std::vector<std::string> columns = {"window"};
   for (const std::string& column : FreeRunColumns()) columns.push_back(column);
   CsvTable table(columns);
-  Add({{"example", "smooth"}, {"solver", kJointLbfgs}, {"points", "100"}}, &table);
+  AddCells({{"example", "smooth"}, {"solver", kJointLbfgs}, {"points", "100"}}, &table);
   CsvTable traces(FreeTraceColumns());
-  Add({{"example", "smooth"}, {"solver", kJointLbfgs}, {"iteration", "0"}}, &traces);
+  AddCells({{"example", "smooth"}, {"solver", kJointLbfgs}, {"iteration", "0"}}, &traces);
   for (const Experiment& experiment : AndersonPaper().experiments) {
     const ExperimentTables tables = {
         {"", table}, {"traces", traces}, {"curves", CsvTable({"example", "solver", "x", "y"})}};
     for (std::size_t claim = 0; claim < experiment.claims.size(); ++claim) {
-      EXPECT_EQ(Verdict(experiment, tables, claim), kUndecided) << experiment.name << claim;
+      EXPECT_EQ(VerdictOn(experiment, tables, claim), kUndecided) << experiment.name << claim;
     }
     for (const ExperimentFigure& figure : experiment.figures) figure.panels(tables);
     if (experiment.shown) experiment.shown(tables);

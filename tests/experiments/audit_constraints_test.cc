@@ -3,22 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "experiments/audit.h"
 #include "experiments/fit_report.h"
 #include "tests/experiments/bezier_segment.h"
 #include "tests/experiments/outlines.h"
+#include "tests/not_a_number.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-// The audit computes in long double and rounds once; the expected values have a few roundings more.
-constexpr double kFewRoundings = 8 * kEpsilon;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A line from 0 to 3 under C(1/2) = 3/2, which makes P_1 follow P_0; data 1 at its begin, 5 at its
 /// end: E = 5, g = (-2, -4).

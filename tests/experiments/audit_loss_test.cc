@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "experiments/fit_report.h"
 #include "tests/experiments/bezier_segment.h"
 #include "tests/experiments/outlines.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
@@ -17,9 +17,6 @@ namespace {
 using Kind = AuditedLoss::Kind;
 using ::testing::HasSubstr;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-// The audit computes in long double and rounds once; the expected values have a few roundings more.
-constexpr double kFewRoundings = 8 * kEpsilon;
 constexpr Kind kLosses[] = {Kind::kHuber, Kind::kCauchy, Kind::kTukey, Kind::kSoftL1};
 
 /// rho and rho' at s, with b = scale^2 = 4.

@@ -9,17 +9,14 @@
 #include <random>
 
 #include "tests/experiments/bezier_segment.h"
+#include "tests/not_a_number.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// The audit rounds to double once; the expected values are put together with a few roundings more.
-constexpr double kFewRoundings = 8 * kEpsilon;
 
 /// A uniform periodic spline on integer knots, domain [0, n), on the line.
 AuditedFit PeriodicLine(int degree, std::vector<double> control_points) {
@@ -307,7 +304,7 @@ TEST(Audit, FloorsCoverRoundingOfTheDerivativeByParameters) {
   }
 }
 
-Claim TrueClaim(const AuditReport& report) {
+Claim TrueDescent(const AuditReport& report) {
   Claim claim;
   claim.energy = report.energy;
   claim.gradient_norm = report.gradient_norm;
@@ -317,7 +314,7 @@ Claim TrueClaim(const AuditReport& report) {
 
 TEST(Verify, AcceptsTheTruth) {
   const AuditReport report = Audit(NoisyCircle(20, 100, 0.0));
-  const Verdict verdict = Verify(TrueClaim(report), report);
+  const Verdict verdict = Verify(TrueDescent(report), report);
   EXPECT_TRUE(verdict.holds) << verdict.failure;
   EXPECT_EQ(verdict.failure, "");
 }
@@ -327,7 +324,7 @@ TEST(Verify, AcceptsAMinimumAtTheRoundingFloor) {
   fit.parameters = {0.0, 1.0};
   fit.points = {0, 0, 4 * (1 + kEpsilon), 0};  // one rounding off
   const AuditReport report = Audit(fit);
-  Claim claim = TrueClaim(report);
+  Claim claim = TrueDescent(report);
   claim.minimum = true;
   EXPECT_TRUE(Verify(claim, report).holds) << Verify(claim, report).failure;
 }
@@ -335,7 +332,7 @@ TEST(Verify, AcceptsAMinimumAtTheRoundingFloor) {
 TEST(Verify, CatchesAWrongEnergy) {
   const AuditReport report = Audit(NoisyCircle(20, 100, 0.0));
   for (const double factor : {0.5, 1 - 1e-9, 1 + 1e-9, 2.0}) {  // the factor 1/2 is an old trap
-    Claim claim = TrueClaim(report);
+    Claim claim = TrueDescent(report);
     claim.energy *= factor;
     const Verdict verdict = Verify(claim, report);
     EXPECT_FALSE(verdict.holds) << factor;
@@ -346,7 +343,7 @@ TEST(Verify, CatchesAWrongEnergy) {
 TEST(Verify, CatchesAWrongGradient) {
   const AuditReport report = Audit(NoisyCircle(20, 100, 0.0));
   for (const double factor : {0.0, 0.5, 1 - 1e-9, 1 + 1e-9}) {
-    Claim claim = TrueClaim(report);
+    Claim claim = TrueDescent(report);
     claim.gradient_norm *= factor;
     const Verdict verdict = Verify(claim, report);
     EXPECT_FALSE(verdict.holds) << factor;
@@ -356,7 +353,7 @@ TEST(Verify, CatchesAWrongGradient) {
 
 TEST(Verify, CatchesAMinimumThatWasNotReached) {
   const AuditReport report = Audit(NoisyCircle(20, 100, 0.0));
-  Claim claim = TrueClaim(report);
+  Claim claim = TrueDescent(report);
   claim.minimum = true;
   claim.gradient_target = 0.999 * report.gradient_norm;
   EXPECT_THAT(Verify(claim, report).failure, HasSubstr("claims a minimum with |g| at most"));
@@ -366,7 +363,7 @@ TEST(Verify, CatchesAMinimumThatWasNotReached) {
 
 TEST(Verify, CatchesAMinimumAboveTheStart) {
   const AuditReport report = Audit(NoisyCircle(20, 100, 0.0));
-  Claim claim = TrueClaim(report);
+  Claim claim = TrueDescent(report);
   claim.minimum = true;
   claim.gradient_target = report.gradient_norm;
   claim.start_energy = 0.999 * report.energy;
@@ -381,14 +378,14 @@ TEST(Verify, CatchesAMinimumWhoseParametersAreDrawnBackIntoTheDomain) {
   fit.points = {3, 0};
   fit.parameter_states = {ParameterState::kPastEnd};
   const AuditReport report = Audit(fit);
-  Claim claim = TrueClaim(report);
+  Claim claim = TrueDescent(report);
   EXPECT_TRUE(Verify(claim, report).holds);  // it claims no minimum
   claim.minimum = true;
   claim.gradient_target = report.gradient_norm;
   EXPECT_THAT(Verify(claim, report).failure, HasSubstr("past an end"));
   fit.points = {4, -2};  // pressed outwards
   const AuditReport pressed = Audit(fit);
-  claim = TrueClaim(pressed);
+  claim = TrueDescent(pressed);
   claim.minimum = true;
   claim.gradient_target = pressed.gradient_norm;
   EXPECT_TRUE(Verify(claim, pressed).holds) << Verify(claim, pressed).failure;
@@ -397,16 +394,16 @@ TEST(Verify, CatchesAMinimumWhoseParametersAreDrawnBackIntoTheDomain) {
 TEST(Verify, CatchesNumbersThatAreNone) {
   const AuditReport report = Audit(NoisyCircle(20, 100, 0.0));
   for (const double wrong : {kNan, std::numeric_limits<double>::infinity()}) {
-    Claim energy = TrueClaim(report);
+    Claim energy = TrueDescent(report);
     energy.energy = wrong;
     EXPECT_FALSE(Verify(energy, report).holds);
-    Claim gradient = TrueClaim(report);
+    Claim gradient = TrueDescent(report);
     gradient.gradient_norm = wrong;
     EXPECT_FALSE(Verify(gradient, report).holds);
   }
   AuditedFit broken = BezierSegmentAndPoint();
   broken.control_points[2] = kNan;
-  EXPECT_FALSE(Verify(TrueClaim(report), Audit(broken)).holds);
+  EXPECT_FALSE(Verify(TrueDescent(report), Audit(broken)).holds);
 }
 
 TEST(Verify, LetsARunSayThatItEndedWithoutANumber) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,13 +11,10 @@
 #include "experiments/fit_report.h"
 #include "tests/experiments/bezier_segment.h"
 #include "tests/experiments/outlines.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-// The audit computes in long double and rounds once; the expected values have a few roundings more.
-constexpr double kFewRoundings = 8 * kEpsilon;
 
 AuditReport WithIntegral(AuditedFit fit, int derivative, double factor) {
   fit.integrals = {{derivative, factor, {}}};

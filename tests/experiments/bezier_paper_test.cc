@@ -12,8 +12,8 @@
 namespace batten {
 namespace {
 
-std::string Verdict(const Experiment& experiment, std::size_t claim,
-                    const ExperimentTables& tables) {
+std::string VerdictWord(const Experiment& experiment, std::size_t claim,
+                        const ExperimentTables& tables) {
   return ToString(experiment.claims.at(claim).judge(tables).verdict);
 }
 
@@ -32,21 +32,24 @@ ExperimentTables TableOf(const std::string& rule, const std::vector<std::string>
 
 TEST(BezierPaperTable, FlatnessIsJudgedByHowOftenItSavesHalf) {
   const Experiment table = BezierPaperTable();
-  EXPECT_EQ(Verdict(table, 0, TableOf("flatness", {"0.6", "0.7", "0.65", "0.5", "-0.05"})),
+  EXPECT_EQ(VerdictWord(table, 0, TableOf("flatness", {"0.6", "0.7", "0.65", "0.5", "-0.05"})),
             "holds");
-  EXPECT_EQ(Verdict(table, 0, TableOf("flatness", {"0.6", "0.7", "0.65", "0.5", "-0.6"})),
+  EXPECT_EQ(VerdictWord(table, 0, TableOf("flatness", {"0.6", "0.7", "0.65", "0.5", "-0.6"})),
             "holds in part");
-  EXPECT_EQ(Verdict(table, 0, TableOf("flatness", {"0.6", "0", "0", "0", "0"})), "holds in part");
-  EXPECT_EQ(Verdict(table, 0, TableOf("flatness", {"0.4", "0", "0", "0", "0"})), "does not hold");
-  EXPECT_EQ(Verdict(table, 0, TableOf("flatness", {})), "undecided");
+  EXPECT_EQ(VerdictWord(table, 0, TableOf("flatness", {"0.6", "0", "0", "0", "0"})),
+            "holds in part");
+  EXPECT_EQ(VerdictWord(table, 0, TableOf("flatness", {"0.4", "0", "0", "0", "0"})),
+            "does not hold");
+  EXPECT_EQ(VerdictWord(table, 0, TableOf("flatness", {})), "undecided");
 }
 
 TEST(BezierPaperTable, HullHoldsWhereItSavesNothing) {
   const Experiment table = BezierPaperTable();
-  EXPECT_EQ(Verdict(table, 1, TableOf("hull", {"0.04", "-3", "0", "0", "0"})), "holds");
-  EXPECT_EQ(Verdict(table, 1, TableOf("hull", {"0.2", "0.2", "0", "0", "0"})), "holds in part");
-  EXPECT_EQ(Verdict(table, 1, TableOf("hull", {"0.2", "0.2", "0.2", "0", "0"})), "does not hold");
-  EXPECT_EQ(Verdict(table, 1, TableOf("hull", {})), "undecided");
+  EXPECT_EQ(VerdictWord(table, 1, TableOf("hull", {"0.04", "-3", "0", "0", "0"})), "holds");
+  EXPECT_EQ(VerdictWord(table, 1, TableOf("hull", {"0.2", "0.2", "0", "0", "0"})), "holds in part");
+  EXPECT_EQ(VerdictWord(table, 1, TableOf("hull", {"0.2", "0.2", "0.2", "0", "0"})),
+            "does not hold");
+  EXPECT_EQ(VerdictWord(table, 1, TableOf("hull", {})), "undecided");
 }
 
 struct CellOf {
@@ -70,7 +73,7 @@ ExperimentTables CellsOf(const std::string& mode, const std::string& rule,
 TEST(BezierPaperFamilies, HalfTheTimeIsAskedOfEveryCellFromDegree12) {
   const Experiment families = BezierPaperFamilies();
   const auto verdict = [&](const std::vector<CellOf>& cells) {
-    return Verdict(families, 0, CellsOf("uniform", "flatness", cells));
+    return VerdictWord(families, 0, CellsOf("uniform", "flatness", cells));
   };
   EXPECT_EQ(verdict({{"3", "2", "2"}, {"12", "0.5", "0.4"}, {"25", "0.5", "0.5"}}), "holds");
   EXPECT_EQ(verdict({{"12", "0.5", "0.4"}, {"25", "1", "1"}}), "holds in part");
@@ -81,7 +84,7 @@ TEST(BezierPaperFamilies, HalfTheTimeIsAskedOfEveryCellFromDegree12) {
 TEST(BezierPaperFamilies, HullSavesNothingWhereNoCellIsFaster) {
   const Experiment families = BezierPaperFamilies();
   const auto verdict = [&](const std::vector<CellOf>& cells) {
-    return Verdict(families, 1, CellsOf("uniform", "hull", cells));
+    return VerdictWord(families, 1, CellsOf("uniform", "hull", cells));
   };
   EXPECT_EQ(verdict({{"12", "1", "1.2"}, {"25", "1", "2"}}), "holds");
   EXPECT_EQ(verdict({{"12", "1", "0.9"}, {"25", "1", "2"}}), "holds in part");
@@ -91,7 +94,7 @@ TEST(BezierPaperFamilies, HullSavesNothingWhereNoCellIsFaster) {
 TEST(BezierPaperFamilies, AdaptivePiecesAreComparedToTenPercentEitherWay) {
   const Experiment families = BezierPaperFamilies();
   const auto verdict = [&](const std::vector<CellOf>& cells) {
-    return Verdict(families, 2, CellsOf("adaptive", "flatness", cells));
+    return VerdictWord(families, 2, CellsOf("adaptive", "flatness", cells));
   };
   EXPECT_EQ(verdict({{"12", "1.05", "1"}, {"25", "0.95", "1"}}), "holds");
   EXPECT_EQ(verdict({{"12", "1.2", "1"}, {"25", "0.95", "1"}}), "holds in part");
@@ -101,7 +104,7 @@ TEST(BezierPaperFamilies, AdaptivePiecesAreComparedToTenPercentEitherWay) {
 TEST(BezierPaperFamilies, LongestNeedsPiecesTimeAndTheCertificate) {
   const Experiment families = BezierPaperFamilies();
   const auto verdict = [&](const std::vector<CellOf>& cells) {
-    return Verdict(families, 4, CellsOf("certified", "longest", cells));
+    return VerdictWord(families, 4, CellsOf("certified", "longest", cells));
   };
   EXPECT_EQ(verdict({{"3", "0.72", "1.5"}, {"12", "0.7", "1.1"}, {"25", "0.71", "0.9"}}), "holds");
   EXPECT_EQ(verdict({{"3", "0.72", "1.5"}, {"12", "0.7", "1.3"}, {"25", "0.71", "0.9"}}),
@@ -114,7 +117,7 @@ TEST(BezierPaperFamilies, LongestNeedsPiecesTimeAndTheCertificate) {
 TEST(BezierPaperFamilies, ThePapersStopIsJudgedByCertifiedErrors) {
   const Experiment families = BezierPaperFamilies();
   const auto verdict = [&](const std::vector<CellOf>& cells) {
-    return Verdict(families, 3, CellsOf("adaptive", "half", cells));
+    return VerdictWord(families, 3, CellsOf("adaptive", "half", cells));
   };
   EXPECT_EQ(verdict({{"3", "1", "1", "1"}, {"12", "1", "1", "0.9"}}), "holds");
   EXPECT_EQ(verdict({{"3", "1", "1", "1"}, {"12", "1", "1", "1.1"}}), "holds in part");
@@ -129,7 +132,7 @@ TEST(BezierPaperRounds, AskForALeastTimeInside) {
     for (std::size_t n = 0; n < ratios.size(); ++n) {
       table.AddRow({"walk", "flatness", std::to_string(n), ratios[n]});
     }
-    return Verdict(rounds, 0, tables);
+    return VerdictWord(rounds, 0, tables);
   };
   EXPECT_EQ(verdict({"1", "0.8", "0.7", "0.6", "0.7", "0.8", "0.9", "1", "1.1"}), "holds");
   EXPECT_EQ(verdict({"1", "1.8", "1.7", "1.6", "1.7", "1.8", "1.9", "2", "2.1"}), "does not hold");
@@ -148,7 +151,7 @@ TEST(BezierPaperBestCuts, CountSharesByMeasureAndFamily) {
       table.AddRow({"flatness", "walk", round, "0.525", std::to_string(near_half)});
       table.AddRow({"flatness", "walk", round, elsewhere, std::to_string(100 - near_half)});
     }
-    return Verdict(best_cuts, claim, tables);
+    return VerdictWord(best_cuts, claim, tables);
   };
   EXPECT_EQ(verdict(0, 95, "0.9"), "holds");
   EXPECT_EQ(verdict(0, 94, "0.9"), "does not hold");
@@ -165,7 +168,7 @@ TEST(BezierPaperAffine, OneChangedCountIsEnough) {
         CsvTable({"map", "pieces", "pieces_before", "rounds", "rounds_before"});
     table.AddRow({"rotation", turned, "100", "9", "9"});
     table.AddRow({"scaling", scaled, "100", "9", "9"});
-    return Verdict(affine, 0, tables);
+    return VerdictWord(affine, 0, tables);
   };
   EXPECT_EQ(verdict("100", "100"), "holds");
   EXPECT_EQ(verdict("101", "100"), "holds in part");
@@ -180,7 +183,7 @@ TEST(BezierPaperOneCut, ComparesWithTheMiddle) {
     table.AddRow({"half", "0.5", "2", "2"});
     table.AddRow({"hull", "0.4", "2", hull});
     table.AddRow({"flatness", "0.6", flatness, "2"});
-    return Verdict(figure, 0, tables);
+    return VerdictWord(figure, 0, tables);
   };
   EXPECT_EQ(verdict("1.9", "1.9"), "holds");
   EXPECT_EQ(verdict("1.9", "2"), "holds in part");
@@ -194,7 +197,7 @@ TEST(BezierPaperMinima, TheGridIsJudgedByWhatItMisses) {
     CsvTable& table = tables[""] = CsvTable({"measure", "method", "value_over_least"});
     table.AddRow({"flatness", "grid", flatness});
     table.AddRow({"hull_area", "grid", hull});
-    return Verdict(minima, 0, tables);
+    return VerdictWord(minima, 0, tables);
   };
   EXPECT_EQ(verdict("1.1", "1"), "holds");
   EXPECT_EQ(verdict("1.2", "1"), "holds in part");
@@ -208,7 +211,7 @@ TEST(BezierPaperEqualError, AsksForAQuarterInEveryCell) {
     CsvTable& table = tables[""] = CsvTable({"rule", "pieces_ratio"});
     table.AddRow({"half", "1"});
     for (const std::string& ratio : ratios) table.AddRow({"longest", ratio});
-    return Verdict(equal_error, 0, tables);
+    return VerdictWord(equal_error, 0, tables);
   };
   EXPECT_EQ(verdict({"0.75", "0.7"}), "holds");
   EXPECT_EQ(verdict({"0.76", "0.7"}), "holds in part");
@@ -223,7 +226,7 @@ TEST(BezierPaperMinima, ExactMustFindTheLeastOnEveryCurve) {
     CsvTable& table = tables[""] = CsvTable({"measure", "method", "found", "value_over_least"});
     table.AddRow({"flatness", "exact", "least", "1"});
     table.AddRow({"flatness", "exact", found, ratio});
-    return Verdict(minima, 1, tables);
+    return VerdictWord(minima, 1, tables);
   };
   EXPECT_EQ(verdict("least", "1.0000001"), "holds");
   EXPECT_EQ(verdict("none", "1.0000001"), "holds in part");
@@ -238,7 +241,7 @@ TEST(BezierPaperMinima, DescentIsJudgedByWhereItEnds) {
     CsvTable& table = tables[""] = CsvTable({"measure", "method", "found"});
     table.AddRow({"flatness", "lbfgs", "least"});
     table.AddRow({"flatness", "ceres_lm", found});
-    return Verdict(minima, 2, tables);
+    return VerdictWord(minima, 2, tables);
   };
   EXPECT_EQ(verdict("least"), "holds");
   EXPECT_EQ(verdict("other"), "holds in part");

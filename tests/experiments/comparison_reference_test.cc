@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "problems/fit_problem.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Degree 1, as many control points as points: A is the identity, P* the data.
 std::unique_ptr<Problem> Polyline() {

@@ -12,6 +12,7 @@
 
 #include "experiments/comparison_tables.h"
 #include "solvers/solver_registry.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
@@ -20,8 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 std::vector<NameSpec> Solvers(const std::string& list) {
   std::vector<NameSpec> solvers;

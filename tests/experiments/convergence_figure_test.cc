@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "experiments/figures.h"
 #include "tests/experiments/figure_files.h"
+#include "tests/not_a_number.h"
 
 namespace batten {
 namespace {
@@ -14,8 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 FigureResult DrawConvergence(const std::vector<const ComparisonRow*>& rows,
                              const std::string& stem) {

@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-CsvTable Read(const std::string& text) {
+CsvTable ReadTable(const std::string& text) {
   CsvTable table;
   std::string error;
   EXPECT_TRUE(CsvTable::FromCsv(text, &table, &error)) << error;
@@ -19,7 +19,7 @@ CsvTable Read(const std::string& text) {
 
 TEST(CsvTable, ReadsBackWhatItWrites) {
   const std::string text = "solver,n\nlbfgs,10\ncg,20\ncg,30\n";
-  const CsvTable table = Read("# a comment\n" + text);
+  const CsvTable table = ReadTable("# a comment\n" + text);
   EXPECT_EQ(table.ToCsv(), text);
   EXPECT_EQ(table.num_rows(), 3U);
   EXPECT_EQ(table.Text(1, "solver"), "cg");
@@ -28,7 +28,7 @@ TEST(CsvTable, ReadsBackWhatItWrites) {
 }
 
 TEST(CsvTable, ChoosesRowsByTheirCells) {
-  const CsvTable table = Read("solver,n\nlbfgs,10\ncg,20\ncg,30\n");
+  const CsvTable table = ReadTable("solver,n\nlbfgs,10\ncg,20\ncg,30\n");
   EXPECT_THAT(table.Where("solver", "cg").Numbers("n"), ElementsAre(20.0, 30.0));
   EXPECT_EQ(table.Where("solver", "newton").num_rows(), 0U);
   EXPECT_THAT(table.Distinct("solver"), ElementsAre("lbfgs", "cg"));

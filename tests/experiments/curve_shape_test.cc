@@ -3,17 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "splines/closest_point.h"
 #include "splines/knot_rules.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Lengths are integrated to 1e-9 of each panel and mostly far better.
 constexpr double kLengthTolerance = 1e-9;
 // Sums of angles between tangents, each good to a few roundings.

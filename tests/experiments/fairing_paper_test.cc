@@ -9,21 +9,12 @@
 
 #include "cost_functions/options.h"
 #include "splines/normal_band.h"
+#include "tests/experiments/hand_made_tables.h"
 #include "tests/experiments/outlines.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
 namespace {
-
-constexpr ClaimVerdict kHolds = ClaimVerdict::kHolds;
-constexpr ClaimVerdict kInPart = ClaimVerdict::kInPart;
-constexpr ClaimVerdict kDoesNotHold = ClaimVerdict::kDoesNotHold;
-constexpr ClaimVerdict kUndecided = ClaimVerdict::kUndecided;
-
-ClaimVerdict Verdict(const Experiment& experiment, const ExperimentTables& tables,
-                     std::size_t claim) {
-  return experiment.claims.at(claim).judge(tables).verdict;
-}
 
 ExperimentTables CircleTables(const std::vector<double>& bump,
                               const std::vector<double>& variation) {
@@ -36,10 +27,10 @@ ExperimentTables CircleTables(const std::vector<double>& bump,
 
 TEST(FairingPaper, JudgesTheBump) {
   const Experiment circle = FairingPaperCircle();
-  EXPECT_EQ(Verdict(circle, CircleTables({4, 3, 2, 9}, {4, 3, 2, 9}), 0), kHolds);
-  EXPECT_EQ(Verdict(circle, CircleTables({4, 3, 3.5, 9}, {4, 3, 2, 9}), 0), kInPart);
-  EXPECT_EQ(Verdict(circle, CircleTables({4, 5, 3.5, 9}, {4, 3, 3, 9}), 0), kDoesNotHold);
-  EXPECT_EQ(Verdict(circle, CircleTables({4, 5}, {4, 3}), 0), kUndecided);
+  EXPECT_EQ(VerdictOn(circle, CircleTables({4, 3, 2, 9}, {4, 3, 2, 9}), 0), kHolds);
+  EXPECT_EQ(VerdictOn(circle, CircleTables({4, 3, 3.5, 9}, {4, 3, 2, 9}), 0), kInPart);
+  EXPECT_EQ(VerdictOn(circle, CircleTables({4, 5, 3.5, 9}, {4, 3, 3, 9}), 0), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(circle, CircleTables({4, 5}, {4, 3}), 0), kUndecided);
 }
 
 /// Alike for all shapes but the coast.
@@ -63,19 +54,19 @@ ExperimentTables ShapeTables(const std::string& setting, double move, double var
 TEST(FairingPaper, JudgesWhatTheWeightsDo) {
   const Experiment shapes = FairingPaperShapes();
   // Data are 100 long: a move of 1 is one per cent.
-  EXPECT_EQ(Verdict(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1), 0), kHolds);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1.2), 0), kDoesNotHold);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("0.01 : 1", 1.1, 0.9, 1, 1), 0), kInPart);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 1", 1, 0.4, 1, 1), 1), kHolds);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 1", 1, 0.4, 1, 2), 1), kInPart);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 1", 1, 0.6, 1, 1), 1), kDoesNotHold);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 1), 2), kHolds);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 2), 2), kInPart);
-  EXPECT_EQ(Verdict(shapes, ShapeTables("1 : 0.01", 1, 1, 0.6, 1), 2), kDoesNotHold);
-  EXPECT_EQ(Verdict(shapes,
-                    {{"", CsvTable({"shape", "setting", "largest_move", "curvature_variation",
-                                    "max_curvature"})}},
-                    1),
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1), 0), kHolds);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1.2), 0), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 1.1, 0.9, 1, 1), 0), kInPart);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 1", 1, 0.4, 1, 1), 1), kHolds);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 1", 1, 0.4, 1, 2), 1), kInPart);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 1", 1, 0.6, 1, 1), 1), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 1), 2), kHolds);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 2), 2), kInPart);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1, 0.6, 1), 2), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(shapes,
+                      {{"", CsvTable({"shape", "setting", "largest_move", "curvature_variation",
+                                      "max_curvature"})}},
+                      1),
             kUndecided);
 }
 
@@ -99,15 +90,15 @@ ExperimentTables MethodTables(double digits, double heavy_digits, double seconds
 
 TEST(FairingPaper, JudgesDigitsAndTime) {
   const Experiment method = FairingPaperMethod();
-  EXPECT_EQ(Verdict(method, MethodTables(12, 11, 1.5), 0), kHolds);
-  EXPECT_EQ(Verdict(method, MethodTables(12, 7, 1.5), 0), kInPart);
-  EXPECT_EQ(Verdict(method, MethodTables(9, 7, 1.5), 0), kDoesNotHold);
-  EXPECT_EQ(Verdict(method, MethodTables(12, 11, 1.5), 1), kHolds);
-  EXPECT_EQ(Verdict(method, MethodTables(12, 11, 900), 1), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(method, MethodTables(12, 11, 1.5), 0), kHolds);
+  EXPECT_EQ(VerdictOn(method, MethodTables(12, 7, 1.5), 0), kInPart);
+  EXPECT_EQ(VerdictOn(method, MethodTables(9, 7, 1.5), 0), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(method, MethodTables(12, 11, 1.5), 1), kHolds);
+  EXPECT_EQ(VerdictOn(method, MethodTables(12, 11, 900), 1), kDoesNotHold);
   const ExperimentTables empty = {
       {"", CsvTable({"points", "setting", "method", "seconds", "times_cholesky", "digits"})}};
-  EXPECT_EQ(Verdict(method, empty, 0), kUndecided);
-  EXPECT_EQ(Verdict(method, empty, 1), kUndecided);
+  EXPECT_EQ(VerdictOn(method, empty, 0), kUndecided);
+  EXPECT_EQ(VerdictOn(method, empty, 1), kUndecided);
 }
 
 /// The source's formula written down again: M from the basis functions' definition with Bessel's

@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "problems/fit_problem.h"
 #include "tests/experiments/figure_files.h"
+#include "tests/not_a_number.h"
 
 namespace batten {
 namespace {
@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Fit {
   std::unique_ptr<Problem> problem;

@@ -10,14 +10,13 @@
 
 #include "problems/fit_problem.h"
 #include "tests/experiments/outlines.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// An open cubic through noise-free points of a parabola: minimum 0, reproduced exactly.
 DataSet Parabola(int m) {

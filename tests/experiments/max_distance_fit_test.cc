@@ -8,6 +8,7 @@
 
 #include "experiments/audit_curve.h"
 #include "experiments/curve_window.h"
+#include "tests/experiments/outlines.h"
 
 namespace batten {
 namespace {
@@ -95,7 +96,7 @@ long double LargestDistance(const MaxDistanceFit& fit, const Points& points) {
   return largest;
 }
 
-DataSet Read(const std::string& name) {
+DataSet ReadPoints(const std::string& name) {
   std::string error;
   const auto data = ReadDataSet(BATTEN_SOURCE_DIR "/data/" + name, &error);
   EXPECT_TRUE(data.has_value()) << error;
@@ -126,10 +127,6 @@ DataSet Resampled(const DataSet& data, bool closed, int count) {
   return made;
 }
 
-double SizeOf(const Points& points) {
-  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
-}
-
 struct RealCurve {
   const char* name;
   bool closed;
@@ -141,7 +138,7 @@ class MaxDistanceOnRealCurves : public ::testing::TestWithParam<RealCurve> {};
 
 TEST_P(MaxDistanceOnRealCurves, IsNeverAboveTheBoundAtTenThousandPoints) {
   const RealCurve real = GetParam();
-  const DataSet data = Resampled(Read(real.name), real.closed, 10000);
+  const DataSet data = Resampled(ReadPoints(real.name), real.closed, 10000);
   const double size = SizeOf(data.points);
   const double bound = real.share * size;
   const MaxDistanceFit fit = Search(data, real.closed, 3, bound);
@@ -297,7 +294,7 @@ TEST(MaxDistance, NeedsNoMoreOnACircleThanUniformCubics) {
 }
 
 TEST(MaxDistance, DoesNotChangeWithPlaceAndScale) {
-  DataSet data = Read("animals/dolphin_80.csv");
+  DataSet data = ReadPoints("animals/dolphin_80.csv");
   // Numbers with few digits, so that moving rounds nothing.
   data.points = (data.points.array() * 1024.0).round() / 1024.0;
   const double bound = std::ldexp(1.0, -8) * SizeOf(data.points);
@@ -318,7 +315,7 @@ TEST(MaxDistance, DoesNotChangeWithPlaceAndScale) {
 }
 
 TEST(MaxDistance, TakesRepeatedPointsAndThoseWithoutWeight) {
-  DataSet data = Read("airfoils/naca2412_open.csv");
+  DataSet data = ReadPoints("airfoils/naca2412_open.csv");
   const double bound = 1e-3;
   const MaxDistanceFit fit = Search(data, false, 3, bound);
   const Eigen::Index m = data.points.rows();
@@ -338,7 +335,7 @@ TEST(MaxDistance, TakesRepeatedPointsAndThoseWithoutWeight) {
 TEST(MaxDistance, RefusesWhatNoCurveCanKeep) {
   FitSpec spec;
   spec.parameters = Parameterization::kChordLength;
-  DataSet data = Read("airfoils/naca2412_open.csv");
+  DataSet data = ReadPoints("airfoils/naca2412_open.csv");
   MaxDistanceFit fit;
   std::string error;
   EXPECT_FALSE(FitWithinDistance(data, spec, 1e-17, kNoWatch, &fit, &error));
@@ -363,7 +360,8 @@ TEST(MaxDistance, EndsWhenItIsToldTo) {
   FitSpec spec;
   spec.closed = true;
   spec.parameters = Parameterization::kChordLength;
-  EXPECT_FALSE(FitWithinDistance(Read("animals/rhino_2000.csv"), spec, 0.5, watch, &fit, &error));
+  EXPECT_FALSE(
+      FitWithinDistance(ReadPoints("animals/rhino_2000.csv"), spec, 0.5, watch, &fit, &error));
   EXPECT_EQ(calls, 20);
   EXPECT_EQ(error, "interrupted; nothing was written");
 }

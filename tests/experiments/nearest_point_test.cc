@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <random>
+
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
@@ -28,8 +29,7 @@ TEST(NearestPoint, FindsWhatLookingAtAllFinds) {
         for (double& value : query) value = 1.5 * normal(random);
         const NearestPoint::Found found = nearest.Find(query.data(), guess);
         const double expected = ByLookingAtAll(points, query);
-        EXPECT_NEAR(found.squared_distance, expected,
-                    8 * std::numeric_limits<double>::epsilon() * expected);
+        EXPECT_NEAR(found.squared_distance, expected, 8 * kEpsilon * expected);
         guess = found.point;
       }
     }

@@ -24,6 +24,11 @@ inline std::unique_ptr<Problem> LoadCatalogueProblem(const std::string& name) {
   return problem;
 }
 
+/// The longest side of the box around the points.
+inline double SizeOf(const Points& points) {
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+}
+
 /// Data, parameters and knots of a fit, to be changed and made a problem again.
 struct FixedFit {
   explicit FixedFit(const Problem& problem)

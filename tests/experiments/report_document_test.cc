@@ -18,7 +18,7 @@ using nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr char kHeader[] =
+constexpr char kTraceHeader[] =
     "iteration,energy_calls,gradient_calls,jacobian_calls,products,projections,seconds,cpu_seconds,"
     "energy,gradient_norm,step_norm,energy_interpolation\n";
 
@@ -98,7 +98,7 @@ TEST_F(ReportDocumentTest, RefusesFoldersWithoutResults) {
 // E - E* = 100 / 4^k: gaps of 4^-k, so that the target 10^-j takes ceil(j log_4 10) iterations.
 TEST_F(ReportDocumentTest, FindsTheIterationsToEachTargetInTheWholeTrace) {
   Write("cells.jsonl", "{\"key\": \"k\", \"problem\": \"a\", \"minimum_energy\": 0}\n");
-  std::string trace = kHeader;
+  std::string trace = kTraceHeader;
   for (int k = 0; k <= 400; ++k) {
     const double energy = 100.0 * std::pow(4.0, -k);
     char row[200];
@@ -190,7 +190,7 @@ TEST_F(ReportDocumentTest, HasTheWorkUnitOfEachInstanceOfABenchmark) {
 TEST_F(ReportDocumentTest, ASkippedRunBelongsToTheProblemAsTheOthersRanIt) {
   Write("cells.jsonl",
         "{\"problem\": \"p\", \"stop\": \"skipped\"}\n{\"key\": \"a\", \"problem\": \"p\"}\n");
-  Write("traces/a.csv", std::string(kHeader) + "0,1,1,0,0,0,1,1,4,1,0,4\n");
+  Write("traces/a.csv", std::string(kTraceHeader) + "0,1,1,0,0,0,1,1,4,1,0,4\n");
   ASSERT_TRUE(Read()) << error_;
   EXPECT_EQ(Summary()["groups"].size(), 1u);
   EXPECT_EQ(Summary()["groups"][0]["terms"], "interpolation");

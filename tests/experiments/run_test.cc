@@ -4,18 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "experiments/sparse_run.h"
 #include "tests/experiments/outlines.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 TEST(Run, RaceEndsWhereTheGradientHasFallenByTheTolerance) {
   const auto problem = LoadCatalogueProblem("rhino");
@@ -38,7 +36,7 @@ TEST(Run, WithoutATargetEndsAtTheRoundingFloor) {
     EXPECT_EQ(result.outcome.reason, StopReason::kRoundingFloor) << solver;
     EXPECT_LE(result.gradient_norm, result.gradient_floor);
     // About four roundings of sums over the data, in the user's units.
-    EXPECT_LT(result.gradient_floor, 1e4 * kEps * result.start_gradient_norm);
+    EXPECT_LT(result.gradient_floor, 1e4 * kEpsilon * result.start_gradient_norm);
   }
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "experiments/comparison_tables.h"
+#include "tests/not_a_number.h"
 namespace batten {
 namespace {
 
@@ -17,8 +17,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 using Json = nlohmann::json;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ComparisonRow Row(const std::string& problem, const std::string& solver, StopReason reason) {
   ComparisonRow row;

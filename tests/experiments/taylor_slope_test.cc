@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Of f = exp at 0 with f' taken to be `derivative`, which is 1.
 TaylorSlope SlopeOfExp(double derivative) {

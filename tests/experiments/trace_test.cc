@@ -9,7 +9,7 @@
 namespace batten {
 namespace {
 
-constexpr char kHeader[] =
+constexpr char kColumns[] =
     "iteration,energy_calls,gradient_calls,jacobian_calls,products,projections,seconds,"
     "cpu_seconds,energy,gradient_norm,step_norm";
 
@@ -27,15 +27,15 @@ TraceRow SomeRow() {
 
 TEST(TraceCsv, HasOneLinePerIterationBelowTheHeader) {
   EXPECT_EQ(TraceCsv({SomeRow()}, {}),
-            std::string(kHeader) + "\n3,4,5,6,7,8,0.125,0.25,0.1,1e-300,2\n");
-  EXPECT_EQ(TraceCsv({}, {}), std::string(kHeader) + "\n");
+            std::string(kColumns) + "\n3,4,5,6,7,8,0.125,0.25,0.1,1e-300,2\n");
+  EXPECT_EQ(TraceCsv({}, {}), std::string(kColumns) + "\n");
 }
 
 TEST(TraceCsv, GivesEachTermItsColumn) {
   TraceRow row = SomeRow();
   row.term_energies = {0.0625, 0.5};
   EXPECT_EQ(TraceCsv({row}, {"interpolation", "fairing/weight=0.5"}),
-            std::string(kHeader) +
+            std::string(kColumns) +
                 ",energy_interpolation,energy_fairing/weight=0.5\n"
                 "3,4,5,6,7,8,0.125,0.25,0.1,1e-300,2,0.0625,0.5\n");
 }
@@ -43,7 +43,7 @@ TEST(TraceCsv, GivesEachTermItsColumn) {
 TEST(TraceCsv, GivesASingleTermTheWholeEnergy) {
   EXPECT_EQ(
       TraceCsv({SomeRow()}, {"interpolation"}),
-      std::string(kHeader) + ",energy_interpolation\n3,4,5,6,7,8,0.125,0.25,0.1,1e-300,2,0.1\n");
+      std::string(kColumns) + ",energy_interpolation\n3,4,5,6,7,8,0.125,0.25,0.1,1e-300,2,0.1\n");
 }
 
 TEST(TraceCsv, LeavesFieldsEmptyThatAreNoFiniteNumber) {
@@ -51,12 +51,12 @@ TEST(TraceCsv, LeavesFieldsEmptyThatAreNoFiniteNumber) {
   row.energy = std::numeric_limits<double>::quiet_NaN();
   row.gradient_norm = std::numeric_limits<double>::infinity();
   EXPECT_EQ(TraceCsv({row}, {"interpolation"}),
-            std::string(kHeader) + ",energy_interpolation\n3,4,5,6,7,8,0.125,0.25,,,2,\n");
+            std::string(kColumns) + ",energy_interpolation\n3,4,5,6,7,8,0.125,0.25,,,2,\n");
 }
 
 TEST(TraceCsv, QuotesATermNameThatWouldEndItsField) {
   const std::string text = TraceCsv({}, {"a,\"b\""});
-  EXPECT_EQ(text, std::string(kHeader) + ",\"energy_a,\"\"b\"\"\"\n");
+  EXPECT_EQ(text, std::string(kColumns) + ",\"energy_a,\"\"b\"\"\"\n");
 }
 
 TEST(TraceCsv, WritesNumbersThatReadBackToTheSameDouble) {

@@ -6,9 +6,9 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 
 #include "tests/problems/scratch_folder.h"
+#include "tests/roundoff.h"
 
 namespace batten {
 namespace {
@@ -17,8 +17,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 class CatalogueVariable {
  public:

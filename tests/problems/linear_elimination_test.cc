@@ -7,13 +7,13 @@
 #include <limits>
 #include <random>
 
+#include "tests/roundoff.h"
+
 namespace batten {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 LinearElimination Made(int num_variables, const std::vector<LinearConstraint>& constraints) {
   LinearElimination elimination;

@@ -2,14 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
+#include "tests/roundoff.h"
 #include "tests/solvers/test_fits.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 struct ObjectiveCase {
   int degree;
@@ -51,7 +48,7 @@ class CompiledAndNot : public ::testing::TestWithParam<ObjectiveCase> {
     return problem;
   }
   /// Sums over the data of a handful of roundings each.
-  double Roundings(double size) const { return 256 * kEps * (1.0 + size); }
+  double Roundings(double size) const { return 256 * kEpsilon * (1.0 + size); }
 
   std::unique_ptr<Problem> problem_;
   Objective compiled_{problem_.get(), nullptr, {true}};
@@ -157,7 +154,7 @@ TEST(ObjectiveRounding, FloorOfTheEnergyIsAboveWhatTwoWaysOfSummingDifferBy) {
   const double floor = Objective::EnergyRoundingFloor(a, plain.ResidualSize(x));
   EXPECT_LE(std::abs(a - b), floor);
   // 4 roundings of each of 200 residuals and of the curve and data, up to 1 each, behind it.
-  EXPECT_LE(floor, 4 * kEps * (2.0 * std::sqrt(a) * std::sqrt(200.0 * 2.0) * 2.0 * 1.5 + a));
+  EXPECT_LE(floor, 4 * kEpsilon * (2.0 * std::sqrt(a) * std::sqrt(200.0 * 2.0) * 2.0 * 1.5 + a));
 }
 
 TEST(ObjectiveRounding, ResidualSizeIsThatOfDataAndCurve) {
@@ -167,7 +164,7 @@ TEST(ObjectiveRounding, ResidualSizeIsThatOfDataAndCurve) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(objective.num_variables());
   double energy = 0.0;
   ASSERT_EQ(objective.Energy(zero, &energy), Status::kOk);
-  EXPECT_NEAR(objective.ResidualSize(zero), std::sqrt(energy), 16 * kEps * std::sqrt(energy));
+  EXPECT_NEAR(objective.ResidualSize(zero), std::sqrt(energy), 16 * kEpsilon * std::sqrt(energy));
 }
 
 }  // namespace

@@ -5,23 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "tests/problems/bezier_path_points.h"
 #include "tests/problems/scratch_folder.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
 namespace {
 
-const Points& PointsAt(const std::vector<BezierPath>& paths, std::size_t path, std::size_t span) {
-  return paths.at(path).spans.at(span).curve.control_points();
-}
-
-struct Read {
+struct SvgContents {
   std::vector<BezierPath> paths;
   std::string left_out;
 };
-Read ReadText(const std::string& text) {
+SvgContents ReadText(const std::string& text) {
   const ScratchFolder folder;
-  Read read;
+  SvgContents read;
   std::string error;
   EXPECT_TRUE(ReadSvgPaths(folder.Write("a.svg", text), &read.paths, &read.left_out, &error))
       << error;
@@ -31,7 +28,7 @@ Read ReadText(const std::string& text) {
 /// The message without the folder's name.
 std::string RefusalOf(const std::string& text) {
   const ScratchFolder folder;
-  Read read;
+  SvgContents read;
   std::string error;
   EXPECT_FALSE(ReadSvgPaths(folder.Write("a.svg", text), &read.paths, &read.left_out, &error))
       << text;
@@ -45,7 +42,7 @@ void ExpectRefused(const std::string& text, const std::string& begin) {
 }
 
 TEST(SvgFile, ReadsThePathsOfElementsInEitherQuotes) {
-  const Read read = ReadText(
+  const SvgContents read = ReadText(
       "<?xml version='1.0'?><svg>\n<path id=\"d\" fill='red'\n d='M0 0L1 1'/>\n"
       "<g><a><path d=\"M2 2Q3 3 4 2\"></path></a></g></svg>");
   ASSERT_EQ(read.paths.size(), 2);
@@ -59,7 +56,7 @@ TEST(SvgFile, ReadsAFileOfPathDataAlone) {
 }
 
 TEST(SvgFile, AttributesMayHoldWhatElsewhereHasAMeaning) {
-  const Read read = ReadText(
+  const SvgContents read = ReadText(
       "<svg><path id='a > b' d = \"M0 0L1 1\" data-d='M9 9L8 8'/>"
       "<path aria-label=\" d='M5 5L6 6' \" d='M2 2L3 3'/></svg>");
   ASSERT_EQ(read.paths.size(), 2);
@@ -68,7 +65,7 @@ TEST(SvgFile, AttributesMayHoldWhatElsewhereHasAMeaning) {
 }
 
 TEST(SvgFile, ReadsEscapesAndNamespaces) {
-  const Read read = ReadText(
+  const SvgContents read = ReadText(
       "<svg:svg xmlns:svg='http://www.w3.org/2000/svg' xmlns:i='x'><i:g><i:path d='bad'/></i:g>"
       "<svg:path d='M0 0&#x20;L1&#32;1'/></svg:svg>");
   ASSERT_EQ(read.paths.size(), 1);
@@ -78,7 +75,7 @@ TEST(SvgFile, ReadsEscapesAndNamespaces) {
 
 TEST(SvgFile, PassesOverWhatIsNotDrawn) {
   const std::string path = "<path d='M5 5L6 6'/>";
-  const Read read = ReadText(
+  const SvgContents read = ReadText(
       "<svg><!-- " + path + " --><desc>transform=\"x\" <g>" + path + "</g></desc><defs>" + path +
       "<g>" + path + "</g></defs><clipPath transform='scale(2)'>" + path + "</clipPath><symbol>" +
       path + "</symbol><g display='none'>" + path + "</g><g style='fill: red; display : none'>" +
@@ -89,7 +86,7 @@ TEST(SvgFile, PassesOverWhatIsNotDrawn) {
 }
 
 TEST(SvgFile, SaysWhichOtherElementsAreLeftOut) {
-  const Read read = ReadText(
+  const SvgContents read = ReadText(
       "<svg><circle r='1'/><g><circle r='2' transform='scale(2)'/><text>M0 0</text></g>"
       "<path d='M0 0L1 1'/><use href='#a'/></svg>");
   EXPECT_EQ(read.paths.size(), 1);
@@ -141,7 +138,7 @@ TEST(SvgFile, RefusesWhatIsNotWellFormed) {
   }
   ExpectRefused("<html><path d='M0 0L1 1'/></html>",
                 "a.svg:1:2: found the element \"html\"; allowed: svg");
-  Read read;
+  SvgContents read;
   std::string error;
   const ScratchFolder folder;
   EXPECT_FALSE(

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/problems/bezier_path_points.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -25,10 +26,6 @@ void ExpectRefused(const std::string& text, std::size_t place, const std::string
   EXPECT_FALSE(ParseSvgPath(text, &paths, &offset, &error)) << text;
   EXPECT_EQ(offset, place) << text;
   EXPECT_EQ(error.rfind(message, 0), 0) << error;
-}
-
-const Points& PointsAt(const std::vector<BezierPath>& paths, std::size_t path, std::size_t span) {
-  return paths.at(path).spans.at(span).curve.control_points();
 }
 
 TEST(SvgPath, ReadsEveryCommandInBothCases) {

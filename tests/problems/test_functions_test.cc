@@ -4,11 +4,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <ostream>
 #include <random>
 #include <set>
+
+#include "tests/roundoff.h"
 
 namespace batten {
 
@@ -16,7 +17,6 @@ void PrintTo(const TestFunction& function, std::ostream* stream) { *stream << fu
 
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 const double kStep = std::cbrt(kEpsilon);
 
 double EnergyAt(const Problem& problem, const Eigen::VectorXd& x) {

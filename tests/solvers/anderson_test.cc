@@ -19,20 +19,14 @@ int IterationsTo(const Problem& problem, const std::string& solver, double toler
   return trial.iterations();
 }
 
-std::unique_ptr<Problem> Rhino() {
+std::unique_ptr<Problem> InterpolatedRhino() {
   FitSpec spec = MakeSpec(3, true, 100);
   spec.knots = KnotRule::kAveraged;
   return MakeFileFit("animals/rhino_100.csv", spec);
 }
 
-std::unique_ptr<Problem> Dolphin() {
-  FitSpec spec = MakeSpec(3, true, 40);
-  spec.parameters = Parameterization::kUniform;
-  return MakeFileFit("animals/dolphin_80.csv", spec);
-}
-
 TEST(Anderson, NeedsFewerIterationsThanItsBase) {
-  const auto rhino = Rhino();
+  const auto rhino = InterpolatedRhino();
   const auto dolphin = Dolphin();
   for (const auto& [problem, base] :
        {std::pair<const Problem*, std::string>(rhino.get(), "gim"), {dolphin.get(), "lspia"}}) {

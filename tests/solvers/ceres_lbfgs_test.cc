@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
 
 #include "problems/test_functions.h"
 #include "solvers/banded_qr.h"
+#include "tests/roundoff.h"
+#include "tests/solvers/contract_cases.h"
 #include "tests/solvers/test_fits.h"
 #include "tests/solvers/trial.h"
 
@@ -21,19 +21,9 @@ using ::testing::StartsWith;
 
 using LbfgsTrial = Trial<CeresLbfgsSolver>;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 const char* const kForms[] = {"objective", "problem", "spans"};
 
 std::string WithForm(const std::string& form) { return "ceres_lbfgs/form=" + form; }
-
-std::unique_ptr<Problem> Rhino() {
-  return MakeFileFit("animals/rhino_100.csv", MakeSpec(3, true, 40));
-}
-
-bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
 
 bool SamePoints(const TestContext& a, const TestContext& b) {
   const auto same = [](const TestContext::Evaluated& first, const TestContext::Evaluated& second) {

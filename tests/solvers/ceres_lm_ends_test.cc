@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "cost_functions/cost_function_family.h"
 #include "problems/test_functions.h"
 #include "solvers/ceres_lm.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/test_fits.h"
 #include "tests/solvers/trial.h"
 
@@ -20,12 +20,6 @@ using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 using LmTrial = Trial<CeresLmSolver>;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-std::unique_ptr<Problem> Rhino() {
-  return MakeFileFit("animals/rhino_100.csv", MakeSpec(3, true, 40));
-}
 
 TEST(CeresLmEnds, CountsWhatCeresEvaluates) {
   // Accepted steps: E at the new point, then E, r and J there once more; at the start the latter.

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "solvers/ceres_lbfgs.h"
 #include "solvers/ceres_lm.h"
 #include "solvers/ceres_problem.h"
 #include "splines/bspline_curve.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/test_fits.h"
 #include "tests/solvers/trial.h"
 
@@ -20,8 +20,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 using LmTrial = Trial<CeresLmSolver>;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 FitSpec FreeSpec(bool closed, int control_points) {
   FitSpec spec = MakeSpec(3, closed, control_points, "free_parameter");

@@ -9,6 +9,7 @@
 
 #include "problems/test_functions.h"
 #include "solvers/banded_qr.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/test_fits.h"
 #include "tests/solvers/trial.h"
 
@@ -16,12 +17,6 @@ namespace batten {
 namespace {
 
 using LmTrial = Trial<CeresLmSolver>;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-std::unique_ptr<Problem> Rhino() {
-  return MakeFileFit("animals/rhino_100.csv", MakeSpec(3, true, 40));
-}
 
 /// With e the difference of two points and g that of their gradients, ||J e||^2 = e'g / 2; a
 /// gradient at the direct answer is noise.

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "cost_functions/cost_function_family.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/test_context.h"
 #include "tests/solvers/test_fits.h"
 
@@ -16,8 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 Objective::Options Uncompiled() {
   Objective::Options options;

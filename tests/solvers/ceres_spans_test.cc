@@ -3,17 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <random>
 #include <set>
 
 #include "problems/objective.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/test_fits.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// sum over spans of ||r||^2 at x.
 double Energy(const std::vector<SpanBlock>& spans, const Eigen::VectorXd& x) {

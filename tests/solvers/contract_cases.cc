@@ -3,8 +3,11 @@
 #include <glog/logging.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstring>
 #include <utility>
+
+#include "cost_functions/options.h"
 
 namespace batten {
 namespace {
@@ -47,6 +50,12 @@ SolverTrial::SolverTrial(const Problem& problem, const std::string& solver,
   all = objective.Expand(x);
 }
 
+double Noted(const SolverTrial& trial, const std::string& name) {
+  double value = std::nan("");
+  EXPECT_TRUE(ParseNumber(trial.context.notes().at(name), &value)) << name;
+  return value;
+}
+
 bool HasItsOwnLimit(const SolverTrial& trial) {
   return !trial.info.limit.empty() && trial.outcome.reason == StopReason::kNativeStop;
 }
@@ -76,6 +85,8 @@ void ExpectRunsOrRefuses(const Problem& problem, const std::string& solver, bool
   ASSERT_EQ(objective.Energy(trial.x, &after), Status::kOk);
   EXPECT_LT(after, before);
 }
+
+Eigen::VectorXd StartOf(const Problem& problem) { return Objective(&problem, nullptr).start(); }
 
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.size() == b.size() &&

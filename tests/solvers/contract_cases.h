@@ -19,6 +19,9 @@
 
 namespace batten {
 
+/// Numbers are about 1: roundings of a step, with room.
+inline constexpr double kRoundingOfStep = 1e-13;
+
 /// A solver as users would write it for problems with free parameters.
 std::string FreeName(const std::string& registered);
 
@@ -56,6 +59,9 @@ struct SolverTrial {
   Outcome outcome;
 };
 
+/// A number that the run has noted.
+double Noted(const SolverTrial& trial, const std::string& name);
+
 /// The run ended where SolverInfo::limit says, which is not the minimum of E.
 bool HasItsOwnLimit(const SolverTrial& trial);
 
@@ -63,6 +69,9 @@ void ExpectOneSentenceWithAWayOut(const std::string& sentence, const std::string
 
 /// A solver takes a problem and lowers E, or says why it does not.
 void ExpectRunsOrRefuses(const Problem& problem, const std::string& solver, bool compile = true);
+
+/// Where solvers start, in the free variables.
+Eigen::VectorXd StartOf(const Problem& problem);
 
 bool SameBits(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 

@@ -1,12 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// Methods that come near their minimum faster than linearly, or linearly at a good rate: points
 /// slide along the curve, which takes the others thousands of iterations.

@@ -1,14 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// Points of a loop at given parameters.
 std::unique_ptr<Problem> AtParameters(const std::vector<double>& parameters, FitSpec spec,
@@ -86,7 +85,7 @@ TEST_P(NearestToTheStart, AmongTheMinimisersOfADeficientFit) {
     }
     const Points expected = dense.NearestMinimiser(dense.PointsOf(problem->start()), weights);
     const double skew = std::sqrt(weights.maxCoeff() / weights.minCoeff());
-    const double rounding = 256 * kEps * dense.condition() * dense.condition();
+    const double rounding = 256 * kEpsilon * dense.condition() * dense.condition();
     EXPECT_LT((dense.PointsOf(trial.x) - expected).norm(),
               skew * dense.DistanceFor(trial.context.gradient_norms().back()) + rounding)
         << trial.outcome.message;
@@ -120,7 +119,7 @@ TEST(SolutionNearestToTheStart, OfManyControlPointsIsTheOneThatConjugateGradient
   EXPECT_TRUE(IsSuccess(cg.outcome.reason));
   // g(P) = 2 A'A (P - P*) on the row space, where P - P* is.
   const double gradients = qr.context.gradient_norms().back() + cg.context.gradient_norms().back();
-  const double rounding = 16 * kEps * qr.x.norm();
+  const double rounding = 16 * kEpsilon * qr.x.norm();
   EXPECT_LT((qr.x - cg.x).norm(), 0.5 * gradients / (4.0 / 9.0) + rounding);
   const Eigen::VectorXd moved = qr.x - problem->start();
   EXPECT_GT(moved.norm(), 1e3 * (qr.x - cg.x).norm());
@@ -146,7 +145,7 @@ TEST(SolutionNearestToTheStart, IsFoundWhereNoPivotIsSmall) {
     const double gradients =
         direct.context.gradient_norms().back() + cg.context.gradient_norms().back();
     EXPECT_LT((direct.x - cg.x).norm(),
-              dense.DistanceFor(gradients) + 256 * kEps * dense.condition() * dense.condition())
+              dense.DistanceFor(gradients) + 256 * kEpsilon * dense.condition() * dense.condition())
         << solver;
   }
 }
@@ -192,7 +191,7 @@ TEST_P(EverySolver, EndsADeficientFitAtTheLeastEnergy) {
       const double largest = (dense.a.transpose() * dense.a).cwiseAbs().rowwise().sum().maxCoeff();
       slowest = std::pow(1.0 - dense.smallest * dense.smallest / largest, trial.iterations());
     }
-    EXPECT_LT(dense.Gap(trial.x), 1e3 * kEps * (energy + start_gap) + slowest * start_gap)
+    EXPECT_LT(dense.Gap(trial.x), 1e3 * kEpsilon * (energy + start_gap) + slowest * start_gap)
         << ToString(trial.outcome.reason);
   }
 }

@@ -2,12 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "problems/test_functions.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 std::unique_ptr<Problem> ClosedFit() {
   return MakeFit(MakeNoisyLoop(50, 2, 1), MakeSpec(3, true, 17));
@@ -55,7 +54,7 @@ TEST_P(EverySolver, RunsOrRefusesConstraintsOnOneCoordinate) {
   if (!claims || needs_free_parameters()) return;
   ASSERT_EQ(WhyUnsupported(*problem, name()), "");
   const SolverTrial trial(*problem, name());
-  EXPECT_NEAR(trial.all[5] - 2.0 * trial.all[7], 0.1, 16 * kEps);
+  EXPECT_NEAR(trial.all[5] - 2.0 * trial.all[7], 0.1, 16 * kEpsilon);
   // The gradient along the constraint, from the dense matrix: x_7, whose coefficient is the larger
   // one, is given up and goes half the way of x_5.
   const DenseFit dense(*problem);
@@ -64,7 +63,7 @@ TEST_P(EverySolver, RunsOrRefusesConstraintsOnOneCoordinate) {
   for (Eigen::Index i = 0; i < g.size(); ++i) {
     if (i != 7) squared += std::pow(g.data()[i] + (i == 5 ? 0.5 * g.data()[7] : 0.0), 2);
   }
-  const double rounding = 256 * kEps * dense.a.norm() * dense.condition();
+  const double rounding = 256 * kEpsilon * dense.a.norm() * dense.condition();
   EXPECT_LE(std::sqrt(squared), 1.01 * trial.context.gradient_norms().back() + rounding)
       << ToString(trial.outcome.reason) << " " << trial.outcome.message;
 }
@@ -191,11 +190,11 @@ void ExpectHoldsCurveAt(const std::string& solver, int degree, bool closed, int 
   const Points expected = KktSolution(dense, c, targets);
   // x - x* = Z (y - y*), and no direction that the constraints leave is flatter than A's flattest.
   const double z_norm = problem->elimination().z().norm();
-  const double rounding = 256 * kEps * z_norm * dense.condition() * dense.condition();
+  const double rounding = 256 * kEpsilon * z_norm * dense.condition() * dense.condition();
   EXPECT_LT((dense.PointsOf(trial.all) - expected).norm(),
             z_norm * dense.DistanceFor(trial.context.gradient_norms().back()) + rounding)
       << ToString(trial.outcome.reason) << " " << trial.outcome.message;
-  EXPECT_LT((c * dense.PointsOf(trial.all) - targets).cwiseAbs().maxCoeff(), 16 * kEps);
+  EXPECT_LT((c * dense.PointsOf(trial.all) - targets).cwiseAbs().maxCoeff(), 16 * kEpsilon);
 }
 
 TEST_P(EverySolver, HoldsTheCurveAtAPointAsTheKktConditionsSay) {

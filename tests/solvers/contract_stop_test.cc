@@ -3,17 +3,13 @@
 #include <limits>
 
 #include "solvers/stopping_context.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-
 constexpr int kNever = StoppingContext::kNever;
-
-/// Of the free variables.
-Eigen::VectorXd Start(const Problem& problem) { return Objective(&problem, nullptr).start(); }
 
 Outcome MinimizeFrom(const Problem& problem, const std::string& solver, StoppingContext* context,
                      Eigen::VectorXd* x) {
@@ -41,7 +37,7 @@ TEST_P(EverySolver, LeavesAtTheIterateThatSaysStop) {
     for (const int last : {0, 1, 3}) {
       SCOPED_TRACE(last);
       StoppingContext context(last, kNever);
-      Eigen::VectorXd x = Start(problem);
+      Eigen::VectorXd x = StartOf(problem);
       const Outcome outcome = MinimizeFrom(problem, solver, &context, &x);
       const int num_iterates = static_cast<int>(context.iterates().size());
       EXPECT_LE(num_iterates, last + 1);
@@ -62,14 +58,14 @@ TEST_P(EverySolver, LeavesAtTheIterateThatSaysStop) {
 TEST_P(EverySolver, BooksItsStartFirst) {
   ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     StoppingContext context(0, kNever);
-    const Eigen::VectorXd start = Start(problem);
+    const Eigen::VectorXd start = StartOf(problem);
     Eigen::VectorXd x = start;
     MinimizeFrom(problem, solver, &context, &x);
     EXPECT_TRUE(SameBits(x, context.iterates().front()));
     if (IsFree(problem)) {
       // Set-up may look for feet, or for the control points that go with the parameters.
       TestContext judge(problem);
-      EXPECT_LE(judge.Energy(x), judge.Energy(start) * (1.0 + 64 * kEps));
+      EXPECT_LE(judge.Energy(x), judge.Energy(start) * (1.0 + 64 * kEpsilon));
     } else {
       EXPECT_TRUE(SameBits(x, start));
     }
@@ -79,7 +75,7 @@ TEST_P(EverySolver, BooksItsStartFirst) {
 TEST_P(EverySolver, LeavesAtTheEvaluationThatIsRefused) {
   ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     StoppingContext all(20, kNever);
-    const Eigen::VectorXd start = Start(problem);
+    const Eigen::VectorXd start = StartOf(problem);
     Eigen::VectorXd x = start;
     MinimizeFrom(problem, solver, &all, &x);
     for (int allowed = 0; allowed < all.num_evaluations(); ++allowed) {
@@ -101,7 +97,7 @@ TEST_P(EverySolver, LeavesAtTheEvaluationThatIsRefused) {
 TEST_P(EverySolver, RefusesAStartThatIsNotFinite) {
   ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-      const Eigen::VectorXd start = Start(problem);
+      const Eigen::VectorXd start = StartOf(problem);
       // A control point, and where they are free a parameter.
       for (const Eigen::Index place : {Eigen::Index{3}, start.size() - 1}) {
         StoppingContext context(kNever, kNever);
@@ -121,7 +117,7 @@ TEST_P(EverySolver, SolvesOrFailsFromAStartWhoseSquareOverflows) {
   ForSupported(GetParam(), [](const Problem& problem, const std::string& solver) {
     TestContext context(problem);
     Objective objective(&problem, &context);
-    Eigen::VectorXd x = Start(problem);
+    Eigen::VectorXd x = StartOf(problem);
     x.head(problem.ranges().front().size).setConstant(1e200);
     const Outcome outcome = MakeSolver(solver)->Minimize(&objective, &context, &x);
     if (outcome.reason == StopReason::kSolved) {
@@ -149,7 +145,7 @@ TEST_P(EverySolver, StaysAtTheMinimum) {
     StoppingContext context(200, kNever);
     x = dense.solution_x();
     MinimizeFrom(problem, solver, &context, &x);
-    const double rounding = 64 * kEps * dense.a.norm() * dense.condition();
+    const double rounding = 64 * kEpsilon * dense.a.norm() * dense.condition();
     for (const Eigen::VectorXd& iterate : context.iterates()) {
       ASSERT_LT(std::sqrt(dense.Gap(iterate)), rounding);
     }

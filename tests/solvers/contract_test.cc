@@ -6,12 +6,11 @@
 #include <iterator>
 #include <set>
 
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 INSTANTIATE_TEST_SUITE_P(Registry, EverySolver,
                          ::testing::ValuesIn(SolverRegistry::Global().Names()),
@@ -92,7 +91,7 @@ TEST_P(EverySolver, EachWordOfAnOptionRuns) {
 }
 
 /// Size of differences of E that are rounding noise where E is `energy`.
-double NoiseOf(double energy) { return 1e3 * kEps * energy; }
+double NoiseOf(double energy) { return 1e3 * kEpsilon * energy; }
 
 bool HasHeavyBall(const std::string& solver) {
   return solver == "polyak_lspia" || solver == "mlspia";
@@ -110,12 +109,12 @@ void ExpectMinimized(const Problem& problem, const SolverTrial& trial) {
   // Rounding of the data, at most 0.5 inside, is worth this in E; in A P it grows with the
   // condition where residuals are large.
   const double rounding =
-      std::pow(64 * kEps * dense.a.norm() * (1.0 + dense.condition() * std::sqrt(energy)), 2);
+      std::pow(64 * kEpsilon * dense.a.norm() * (1.0 + dense.condition() * std::sqrt(energy)), 2);
   switch (trial.outcome.reason) {
     case StopReason::kSolved:
       // Through the normal equations A P is off by the condition too (Higham, sec. 20.4); what QR
       // keeps is held against narrower bounds in its own tests.
-      EXPECT_LE(gap, std::pow(64 * kEps * dense.a.norm() * dense.condition(), 2) + rounding);
+      EXPECT_LE(gap, std::pow(64 * kEpsilon * dense.a.norm() * dense.condition(), 2) + rounding);
       break;
     case StopReason::kGradientSmall:
     case StopReason::kRoundingFloor: {
@@ -241,7 +240,7 @@ TEST_P(EverySolver, FollowsDataThatAreMovedAndTurned) {
     const double near = dense.DistanceFor(plain.context.gradient_norms().back()) / scale +
                         dense.DistanceFor(trial.context.gradient_norms().back()) /
                             changed->curve_fit()->setting().scale +
-                        64 * kEps * 1000.0 * dense.condition();
+                        64 * kEpsilon * 1000.0 * dense.condition();
     EXPECT_LT((ends - turned).norm(), near);
   }
 }
@@ -271,7 +270,7 @@ TEST_P(EverySolver, TakesThePointsInAnyOrder) {
     const DenseFit dense(*problem);
     const double near = dense.DistanceFor(plain.context.gradient_norms().back() +
                                           trial.context.gradient_norms().back()) +
-                        64 * kEps * dense.condition();
+                        64 * kEpsilon * dense.condition();
     EXPECT_LT((plain.x - trial.x).norm(), near);
   }
 }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <limits>
 
 #include "tests/solvers/contract_cases.h"
 
@@ -20,7 +19,7 @@ struct HessianCase {
   const char* terms;
 };
 
-const HessianCase kCases[] = {
+const HessianCase kHessianCases[] = {
     {"Bending", 3, false, 12, 2, "interpolation,curve_fairing/weight=1e-3"},
     {"VariationInSpace", 4, false, 13, 3,
      "interpolation,curve_fairing/measure=variation/weight=1e-8"},
@@ -35,7 +34,7 @@ std::unique_ptr<Problem> MakeCase(const HessianCase& c) {
 }
 
 class ExactNewtonCases : public ::testing::TestWithParam<HessianCase> {};
-INSTANTIATE_TEST_SUITE_P(Fits, ExactNewtonCases, ::testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Fits, ExactNewtonCases, ::testing::ValuesIn(kHessianCases),
                          [](const auto& c) { return c.param.name; });
 
 TEST_P(ExactNewtonCases, HessianIsTheDerivativeOfTheGradient) {
@@ -100,7 +99,7 @@ TEST_P(ExactNewtonCases, FindsTheMinimumOfLbfgs) {
 }
 
 TEST(ExactNewton, HoldsLinearConstraints) {
-  const auto problem = MakeCase(kCases[0]);
+  const auto problem = MakeCase(kHessianCases[0]);
   const LinearConstraint held = HoldCurve(*problem, 0.4, 0, 0.1);
   SetConstraints({held, {"tied", {{6, 1.0}, {9, -1.0}}, 0.03}}, problem.get());
   SolverTrial trial(*problem, "newton", {200});

@@ -5,9 +5,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "solvers/foot_projection.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 #include "tests/solvers/dense_joint.h"
 
@@ -17,7 +17,6 @@ namespace {
 /// Of sums over some 50 points of products, each off by a few roundings; where t is eliminated the
 /// division by |C'|^2 + r . C'' can cost a digit or two. The bound that issue 4 asks for.
 constexpr double kRelative = 1e-10;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 struct ModelCase {
   std::string name;
@@ -359,7 +358,7 @@ TEST_P(FootModels, StepsWithinLinearConstraintsAsTheKktConditionsSay) {
   Eigen::VectorXd step;
   model.Solve(&step);
   ASSERT_EQ(step.size(), n);
-  EXPECT_LT((step - expected).norm(), kEps * static_cast<double>(n) * hessian.norm() *
+  EXPECT_LT((step - expected).norm(), kEpsilon * static_cast<double>(n) * hessian.norm() *
                                           hessian.inverse().norm() * expected.norm());
   EXPECT_LT((c * step).norm(), 1e-12);
 }

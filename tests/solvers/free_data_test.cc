@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 const char* const kFreeSolvers[] = {
     "foot_newton", "newton",       "lm_schur",     "varpro", "tdm",         "sdm",     "pdm",
@@ -78,7 +77,7 @@ TEST(FootNewton, EndsNoHigherThanNewtonFromACircle) {
     SolverTrial newton(*problem, "newton");
     EXPECT_TRUE(IsSuccess(feet.outcome.reason)) << name;
     const double energy = newton.context.Energy(newton.x);
-    EXPECT_LE(feet.context.Energy(feet.x), energy * (1.0 + 1e3 * kEps)) << name;
+    EXPECT_LE(feet.context.Energy(feet.x), energy * (1.0 + 1e3 * kEpsilon)) << name;
   }
 }
 
@@ -109,7 +108,7 @@ void ExpectEndsHonestly(const Problem& problem) {
     // Points inside are of size 1: a start that is best already may move by its rounding.
     const double size = objective.ResidualSize(objective.start());
     const double noise =
-        Objective::EnergyRoundingFloor(start, size) + std::pow(16 * kEps * size, 2);
+        Objective::EnergyRoundingFloor(start, size) + std::pow(16 * kEpsilon * size, 2);
     EXPECT_LE(end, start + noise) << ToString(trial.outcome.reason);
     EXPECT_NE(trial.outcome.reason, StopReason::kNotRun);
     EXPECT_NE(trial.outcome.reason, StopReason::kDiverged);

@@ -17,7 +17,7 @@ struct FairCase {
   const char* fairing;
 };
 
-const FairCase kCases[] = {
+const FairCase kFairCases[] = {
     {"Bending", 3, true, 12, 2, false, "curve_fairing/weight=1e-3"},
     {"OpenBending", 3, false, 9, 2, false, "curve_fairing/weight=1e-3"},
     {"VariationInSpace", 4, true, 11, 3, false, "curve_fairing/measure=variation/weight=1e-8"},
@@ -36,7 +36,7 @@ std::unique_ptr<Problem> MakeCase(const FairCase& c) {
 }
 
 class FreeFairing : public ::testing::TestWithParam<FairCase> {};
-INSTANTIATE_TEST_SUITE_P(Fits, FreeFairing, ::testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Fits, FreeFairing, ::testing::ValuesIn(kFairCases),
                          [](const auto& c) { return c.param.name; });
 
 TEST_P(FreeFairing, LeadsAllWhoTakeItToTheMinimumOfLbfgs) {
@@ -86,7 +86,7 @@ TEST_P(FreeFairing, OfNewtonEndsQuadratically) {
 }
 
 TEST(FreeFairing, CountsItsProducts) {
-  const auto problem = MakeCase(kCases[0]);
+  const auto problem = MakeCase(kFairCases[0]);
   const SolverTrial newton(*problem, "newton", {3});
   // 12 control points of a closed cubic: one run, 12 colours of two coordinates for each sum.
   EXPECT_EQ(newton.context.count(Evaluation::kProduct) % 24, 0);
@@ -96,7 +96,7 @@ TEST(FreeFairing, CountsItsProducts) {
 }
 
 TEST(FreeFairing, HoldsLinearConstraints) {
-  const auto problem = MakeCase(kCases[2]);
+  const auto problem = MakeCase(kFairCases[2]);
   LinearConstraint held = HoldCurve(*problem, 0.4, 0, 0.0);
   const auto place = [&held](const Eigen::VectorXd& all) {
     double sum = 0.0;
@@ -120,7 +120,7 @@ TEST(FreeFairing, HoldsLinearConstraints) {
 }
 
 TEST(FreeFairing, IsRefusedByNameWhereOnlyAffineTermsAreTaken) {
-  const auto problem = MakeCase(kCases[0]);
+  const auto problem = MakeCase(kFairCases[0]);
   for (const char* solver : {"gi", "pdm", "tdm", "sdm", "varpro"}) {
     const std::string why = WhyUnsupported(*problem, solver);
     ExpectOneSentenceWithAWayOut(why, solver);

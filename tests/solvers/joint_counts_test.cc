@@ -12,7 +12,7 @@ std::unique_ptr<Problem> Bean() {
 }
 
 /// A curve that starts in one point, far from good steps.
-std::unique_ptr<Problem> Rhino() {
+std::unique_ptr<Problem> FreeRhino() {
   return MakeFileFit("animals/rhino_100.csv", MakeFreeSpec(3, true, 8));
 }
 
@@ -51,7 +51,7 @@ Told Tell(SolverTrial* trial) {
 TEST(JointDescent, CountsThePassAfterAStepThatIsNotTaken) {
   int rejected = 0;
   for (const char* solver : {"lm_schur", "newton"}) {
-    for (const auto& problem : {Bean(), Rhino()}) {
+    for (const auto& problem : {Bean(), FreeRhino()}) {
       constexpr int kIterations = 8;  // early: differences of E are no rounding
       SolverTrial trial(*problem, solver, {kIterations});
       const Told told = Tell(&trial);

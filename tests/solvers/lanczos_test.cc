@@ -4,15 +4,13 @@
 
 #include <Eigen/Dense>
 #include <functional>
-#include <limits>
 
 #include "problems/objective.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/circulant_fit.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 using Multiply = std::function<Status(const Eigen::VectorXd&, Eigen::VectorXd*)>;
 
@@ -35,8 +33,8 @@ TEST(Lanczos, FindsTheEndsOfACirculantSpectrum) {
     // N = A'A: squares of 1 and, for even n, of 1/3.
     EXPECT_NEAR(spectrum.largest, 1.0, 1e-3);
     EXPECT_NEAR(spectrum.smallest, 1.0 / 9.0, 1e-3 / 9.0);
-    EXPECT_LE(spectrum.largest, 1.0 + 8 * kEps);
-    EXPECT_GE(spectrum.smallest, 1.0 / 9.0 - 8 * kEps);
+    EXPECT_LE(spectrum.largest, 1.0 + 8 * kEpsilon);
+    EXPECT_GE(spectrum.smallest, 1.0 / 9.0 - 8 * kEpsilon);
     EXPECT_LT(spectrum.products, 300) << "it saw by itself that it had come close enough";
   }
 }
@@ -52,7 +50,7 @@ TEST(Lanczos, AnEigenvalueLiesWithinTheErrorItStates) {
     const auto distance = [&](double value) {
       return (eigenvalues.array() - value).abs().minCoeff();
     };
-    const double rounding = 64 * kEps * eigenvalues.maxCoeff();
+    const double rounding = 64 * kEpsilon * eigenvalues.maxCoeff();
     EXPECT_LE(distance(spectrum.smallest), spectrum.smallest_error + rounding);
     EXPECT_LE(distance(spectrum.largest), spectrum.largest_error + rounding);
   }
@@ -70,8 +68,8 @@ TEST(Lanczos, StopsWhereTheStartReachesNoFurther) {
   start << 0.0, 1.0, 1.0, 0.0;
   ASSERT_EQ(EstimateSpectrum(Diagonal(diagonal), start, 1e-3, 300, &spectrum), Status::kOk);
   EXPECT_LE(spectrum.products, 8);
-  EXPECT_NEAR(spectrum.smallest, 2.0, 64 * kEps);
-  EXPECT_NEAR(spectrum.largest, 5.0, 64 * kEps);
+  EXPECT_NEAR(spectrum.smallest, 2.0, 64 * kEpsilon);
+  EXPECT_NEAR(spectrum.largest, 5.0, 64 * kEpsilon);
 }
 
 TEST(Lanczos, OfNothingIsNothing) {

@@ -5,12 +5,11 @@
 
 #include "cost_functions/cost_function_family.h"
 #include "problems/test_functions.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 class LbfgsOnTestFunctions : public ::testing::TestWithParam<const char*> {};
 
@@ -66,7 +65,7 @@ TEST(Lbfgs, BeginsWithThePlainGradientAtMostOfLengthOne) {
   ASSERT_EQ(objective.Gradient(problem->start(), &gradient), Status::kOk);
   // The paper's H0 = I gives the direction; the first trial step is 1 / |g| where |g| > 1.
   const auto& first_trial = trial.context.evaluations()[2].x;
-  EXPECT_LT((first_trial - problem->start() + gradient.normalized()).norm(), 8 * kEps);
+  EXPECT_LT((first_trial - problem->start() + gradient.normalized()).norm(), 8 * kEpsilon);
 }
 
 TEST(Lbfgs, OnAQuadraticAnIterationIsOneProductAndOneGradient) {

@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/roundoff.h"
+
 namespace batten {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// phi in closed form; no number where value or slope is not finite.
 class ClosedForm : public LineFunction {
@@ -114,7 +115,7 @@ TEST(SearchWolfe, TheCubicThroughAParabolaFindsItsMinimum) {
   ClosedForm line([](double a) { return a * (a - 2.0); }, [](double a) { return 2.0 * a - 2.0; });
   LinePoint found;
   EXPECT_EQ(SearchWolfe(options, -2.0, 1.9, &line, &found), LineSearchEnd::kFound);
-  EXPECT_NEAR(found.step, 1.0, 8 * kEps);
+  EXPECT_NEAR(found.step, 1.0, 8 * kEpsilon);
   EXPECT_EQ(line.num_evaluations, 2);
 }
 
@@ -133,7 +134,7 @@ TEST(SearchWolfe, OnlyStrongConditionsBoundTheSlopeFromAbove) {
 TEST(SearchWolfe, NearRoundingTheSlopesAloneDecide) {
   // phi = c a (a - 2) with c far below the rounding of phi, which shows as a rise of 2 eps.
   const double c = 1e-20;
-  const auto value = [](double a) { return a == 0.0 ? 0.0 : 2.0 * kEps; };
+  const auto value = [](double a) { return a == 0.0 ? 0.0 : 2.0 * kEpsilon; };
   const auto slope = [c](double a) { return c * (2.0 * a - 2.0); };
   for (const double first : {0.03, 1.0, 1.7, 90.0}) {
     ClosedForm line(value, slope);
@@ -141,7 +142,7 @@ TEST(SearchWolfe, NearRoundingTheSlopesAloneDecide) {
     LinePoint found;
     EXPECT_EQ(SearchWolfe(options, -2.0 * c, first, &line, &found), LineSearchEnd::kNoStep)
         << first;
-    options.noise = 8.0 * kEps;
+    options.noise = 8.0 * kEpsilon;
     ASSERT_EQ(SearchWolfe(options, -2.0 * c, first, &line, &found), LineSearchEnd::kFound) << first;
     // (2 c1 - 1) phi'(0) >= phi'(a) >= c2 phi'(0): Hager and Zhang, eq. 4.1.
     EXPECT_LE(found.slope, (2.0 * options.sufficient_decrease - 1.0) * -2.0 * c);

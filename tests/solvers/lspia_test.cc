@@ -60,12 +60,6 @@ TEST(Lspia, OptimalStepBalancesTheEndsOfTheSpectrum) {
   EXPECT_GT(trial.context.count(Evaluation::kProduct), trial.iterations());  // Lanczos' too
 }
 
-std::unique_ptr<Problem> Dolphin() {
-  FitSpec spec = MakeSpec(3, true, 40);
-  spec.parameters = Parameterization::kUniform;
-  return MakeFileFit("animals/dolphin_80.csv", spec);
-}
-
 TEST(Lspia, SaysThatItJumpsToAndFroWhereAnEigenvalueIsMinusOne) {
   // Column sums 2, step 2 / 2, and the largest eigenvalue of A'A is 2.
   const auto problem = Dolphin();

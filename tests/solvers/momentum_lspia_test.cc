@@ -48,12 +48,6 @@ const Points& Before(const std::vector<Points>& points) {
   return points[points.size() < 2 ? 0 : points.size() - 2];
 }
 
-double Noted(const SolverTrial& trial, const std::string& name) {
-  double value = std::nan("");
-  EXPECT_TRUE(ParseNumber(trial.context.notes().at(name), &value)) << name;
-  return value;
-}
-
 TEST(PolyakLspia, IsTheHeavyBallWithTheWeightsOfTheSpectrum) {
   const double sum = kRootLargest + kRootSmallest;
   const double step = 4.0 / (sum * sum);                                      // 9 / 4

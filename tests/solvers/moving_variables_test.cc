@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "solvers/ceres_problem.h"
+#include "tests/roundoff.h"
 #include "tests/solvers/test_fits.h"
 
 namespace batten {
@@ -95,7 +95,6 @@ TEST(MovingVariables, CeresHasEAndItsGradientAnywhereInTheWindows) {
       ASSERT_EQ(objective.EnergyAndGradient(bound.state(), &energy, &gradient), Status::kOk);
       // Moving t by a period rounds it, by eps; derivatives of C by t are below 1e3, those of C'
       // below 1e5, and 100 residuals of size 1 are summed.
-      constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
       EXPECT_NEAR(2.0 * cost, energy, 1e5 * kEpsilon);
       ASSERT_EQ(static_cast<Eigen::Index>(half.size()), gradient.size());
       const Eigen::Map<const Eigen::VectorXd> mapped(half.data(), gradient.size());
@@ -117,7 +116,7 @@ TEST(MovingVariables, OneThatAConstraintHoldsMayBeInAnotherPeriod) {
   ASSERT_TRUE(bound.problem()->Evaluate({}, &cost, nullptr, nullptr, nullptr));
   ASSERT_EQ(objective.Energy(objective.start(), &energy), Status::kOk);
   // 100 squares below 1, and one t rounded by 4 eps.
-  EXPECT_NEAR(2.0 * cost, energy, 1000.0 * std::numeric_limits<double>::epsilon());
+  EXPECT_NEAR(2.0 * cost, energy, 1000.0 * kEpsilon);
 }
 
 }  // namespace

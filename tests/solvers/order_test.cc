@@ -2,12 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/roundoff.h"
 #include "tests/solvers/contract_cases.h"
 
 namespace batten {
 namespace {
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// Points of a zigzag that runs to and fro: feet on a smooth curve would change their order.
 std::unique_ptr<Problem> Zigzag(bool closed, bool keep_order, bool hold_ends = false) {
@@ -44,8 +43,8 @@ TEST(OrderOfPoints, IsKeptByLbfgsUpToAConstrainedMinimum) {
     if (!closed) {
       for (double& value : s) value = fit.basis().Wrap(value);
     }
-    for (Eigen::Index i = 1; i < s.size(); ++i) EXPECT_GE(s[i], s[i - 1] - 4 * kEps) << i;
-    EXPECT_LE(t[t.size() - 1] - t[0], fit.basis().domain_length() * (1 + 4 * kEps));
+    for (Eigen::Index i = 1; i < s.size(); ++i) EXPECT_GE(s[i], s[i - 1] - 4 * kEpsilon) << i;
+    EXPECT_LE(t[t.size() - 1] - t[0], fit.basis().domain_length() * (1 + 4 * kEpsilon));
     // Without the order points do change it, and E is lower.
     const auto loose = Zigzag(closed, false, hold_ends);
     SolverTrial free_trial(*loose, "lbfgs", {20000});
@@ -65,7 +64,7 @@ TEST(OrderOfPoints, EndsWhereNoOrderedStepLowersTheEnergy) {
     // Steps of ordered parameters lead to ordered ones half of the time; t(s) is what counts.
     Eigen::VectorXd x = trial.x;
     for (double& value : x.tail(m)) value += 1e-4 * normal(random);
-    EXPECT_GE(trial.context.Energy(x), energy * (1.0 - 64 * kEps));
+    EXPECT_GE(trial.context.Energy(x), energy * (1.0 - 64 * kEpsilon));
   }
 }
 
@@ -97,15 +96,15 @@ TEST(OrderOfPoints, IsKeptAcrossTheSeamUpToAConstrainedMinimum) {
     EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << ToString(trial.outcome.reason);
     const Eigen::VectorXd t = trial.all.tail(m);
     EXPECT_TRUE(IsInOrder(t));
-    EXPECT_LE(t[m - 1] - t[0], 1.0 + 4 * kEps);
-    if (t[m - 1] - t[0] > 1.0 - 4 * kEps) ++active;
+    EXPECT_LE(t[m - 1] - t[0], 1.0 + 4 * kEpsilon);
+    if (t[m - 1] - t[0] > 1.0 - 4 * kEpsilon) ++active;
     // No step of one control point's coordinate or of one point, put in order, lowers E.
     const double energy = trial.context.Energy(trial.x);
     for (Eigen::Index i = 0; i < trial.x.size(); ++i) {
       for (const double step : {-1e-4, 1e-4}) {
         Eigen::VectorXd x = trial.x;
         x[i] += step;
-        EXPECT_GE(trial.context.Energy(x), energy * (1.0 - 64 * kEps)) << i;
+        EXPECT_GE(trial.context.Energy(x), energy * (1.0 - 64 * kEpsilon)) << i;
       }
     }
   }

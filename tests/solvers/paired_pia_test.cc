@@ -13,14 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kRoundingOfStep = 1e-13;
-
-double Noted(const SolverTrial& trial, const std::string& name) {
-  double value = std::nan("");
-  EXPECT_TRUE(ParseNumber(trial.context.notes().at(name), &value)) << name;
-  return value;
-}
-
 /// Open, so that point i belongs to control point i.
 std::unique_ptr<Problem> OpenInterpolation(int n) {
   FitSpec spec = MakeSpec(3, false, n);

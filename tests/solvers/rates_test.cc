@@ -51,12 +51,6 @@ struct Stretch {
   double slope = 0.0;  // mean logarithm of the gap's factor per iteration
 };
 
-std::unique_ptr<Problem> Dolphin() {
-  FitSpec spec = MakeSpec(3, true, 40);
-  spec.parameters = Parameterization::kUniform;
-  return MakeFileFit("animals/dolphin_80.csv", spec);
-}
-
 void ExpectSlope(const Problem& problem, const DenseFit& dense, const std::string& solver,
                  double log_rate, int cycle = 1) {
   const double slope = Stretch(Gaps(problem, dense, solver), cycle).slope;

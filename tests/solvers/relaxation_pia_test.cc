@@ -13,9 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Numbers are about 1: roundings of a step, with room.
-constexpr double kRoundingOfStep = 1e-13;
-
 /// What the dense algebra of one step needs.
 struct NormalFit {
   explicit NormalFit(const Problem& problem)
@@ -38,12 +35,6 @@ std::vector<std::unique_ptr<Problem>> OpenAndClosed() {
   problems.push_back(MakeFit(MakeNoisyLoop(50, 2, 41), MakeSpec(3, false, 14)));
   problems.push_back(MakeFit(MakeNoisyLoop(50, 3, 42), MakeSpec(4, true, 13)));
   return problems;
-}
-
-double Noted(const SolverTrial& trial, const std::string& name) {
-  double value = std::nan("");
-  EXPECT_TRUE(ParseNumber(trial.context.notes().at(name), &value)) << name;
-  return value;
 }
 
 TEST(JacobiPia, StepsByTheInverseDiagonalOfTheNormalMatrix) {

@@ -73,15 +73,13 @@ std::unique_ptr<Problem> FirstProblemFor(const std::string& name) {
   return std::move(problems.front());
 }
 
-Eigen::VectorXd Start(const Problem& problem) { return Objective(&problem, nullptr).start(); }
-
 class EveryStepper : public ::testing::TestWithParam<std::string> {};
 
 /// A run of `total` steps, and one that is left after `before` and taken up by another object.
 void ExpectResumes(const Problem& problem, const std::string& name, int before, int total) {
   SCOPED_TRACE(problem.name() + " left after " + std::to_string(before));
-  SteppedRun whole(problem, name, Start(problem));
-  SteppedRun first(problem, name, Start(problem));
+  SteppedRun whole(problem, name, StartOf(problem));
+  SteppedRun first(problem, name, StartOf(problem));
   for (int k = 0; k < before; ++k) {
     const bool goes_on = whole.Step();
     ASSERT_EQ(first.Step(), goes_on);
@@ -109,7 +107,7 @@ TEST_P(EveryStepper, StepsAsInItsOwnLoop) {
   options.gradient_tolerance = -1.0;
   options.stop_at_rounding_floor = false;
   const SolverTrial loop(*problem, GetParam(), options);
-  SteppedRun stepped(*problem, GetParam(), Start(*problem));
+  SteppedRun stepped(*problem, GetParam(), StartOf(*problem));
   for (const Eigen::VectorXd& x : loop.context.iterates()) {
     ASSERT_TRUE(SameBits(stepped.x(), x));
     stepped.Step();
@@ -121,9 +119,9 @@ TEST_P(EveryStepper, RunsInLockstepWithAnyOther) {
   for (const std::string& other : StepperNames()) {
     SCOPED_TRACE(other);
     const auto its_problem = FirstProblemFor(other);
-    SteppedRun alone(*problem, GetParam(), Start(*problem));
-    SteppedRun one(*problem, GetParam(), Start(*problem));
-    SteppedRun two(*its_problem, other, Start(*its_problem));
+    SteppedRun alone(*problem, GetParam(), StartOf(*problem));
+    SteppedRun one(*problem, GetParam(), StartOf(*problem));
+    SteppedRun two(*its_problem, other, StartOf(*its_problem));
     for (int k = 0; k < 15; ++k) {
       const bool goes_on = alone.Step();
       ASSERT_EQ(one.Step(), goes_on);

@@ -57,6 +57,16 @@ inline std::unique_ptr<Problem> MakeFileFit(const std::string& path, FitSpec spe
   return problem;
 }
 
+inline std::unique_ptr<Problem> Rhino() {
+  return MakeFileFit("animals/rhino_100.csv", MakeSpec(3, true, 40));
+}
+
+inline std::unique_ptr<Problem> Dolphin() {
+  FitSpec spec = MakeSpec(3, true, 40);
+  spec.parameters = Parameterization::kUniform;
+  return MakeFileFit("animals/dolphin_80.csv", spec);
+}
+
 /// Points near a bent loop without symmetry, off it by noise of standard deviation 0.1, with
 /// weights in [0.1, 2].
 inline DataSet MakeNoisyLoop(int num_points, int dimension, unsigned seed) {

@@ -13,7 +13,7 @@ namespace batten {
 namespace {
 
 // Blossoms and the curve's own evaluation round some 4 (p + 1) times each, of numbers up to 1.
-double Tolerance(int degree) { return 4 * 8 * (degree + 1) * kEpsilon; }
+double BlossomTolerance(int degree) { return 4 * 8 * (degree + 1) * kEpsilon; }
 
 class EverySpline : public ::testing::TestWithParam<SplineKind> {};
 INSTANTIATE_TEST_SUITE_P(BezierConversion, EverySpline, ::testing::ValuesIn(AllSplineKinds()),
@@ -44,7 +44,7 @@ TEST_P(EverySpline, ItsBezierSpansAreTheCurve) {
         spans[i].curve.Evaluate(s, point);
         curve.Evaluate(spans[i].begin + s * (spans[i].end - spans[i].begin), 0, expected);
         for (int c = 0; c < 2; ++c) {
-          EXPECT_NEAR(point[c], expected[c], 8 * Tolerance(basis.degree()));
+          EXPECT_NEAR(point[c], expected[c], 8 * BlossomTolerance(basis.degree()));
         }
       }
     }
@@ -68,7 +68,7 @@ TEST_P(EverySpline, ItComesBackFromItsBezierSpans) {
       back->Evaluate(t, 0, point);
       curve.Evaluate(t, 0, expected);
       for (int c = 0; c < 2; ++c)
-        EXPECT_NEAR(point[c], expected[c], 16 * Tolerance(basis.degree()));
+        EXPECT_NEAR(point[c], expected[c], 16 * BlossomTolerance(basis.degree()));
     }
   }
 }

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "splines/bezier_measures.h"
+#include "tests/splines/bezier_pieces.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
 namespace {
-
-BezierCurve CurveOf(const Points& points) { return BezierCurve::Make(points, nullptr).value(); }
 
 DistanceBounds OfWhole(const BezierCurve& curve) {
   const Points& points = curve.control_points();

@@ -42,6 +42,10 @@ inline const DegenerateCurve kDegenerateCurves[] = {
     {"in_space", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}},
 };
 
+inline BezierCurve CurveOf(const Points& points) {
+  return BezierCurve::Make(points, nullptr).value();
+}
+
 inline DistanceBounds TrueErrorOf(const BezierCurve& curve, const Subdivision& result) {
   return BoundHausdorffDistance(
       curve,

@@ -14,8 +14,6 @@
 namespace batten {
 namespace {
 
-BezierCurve CurveOf(const Points& points) { return BezierCurve::Make(points, nullptr).value(); }
-
 Subdivision Subdivided(const BezierCurve& curve, const CutChoice& rule,
                        const SubdivisionOptions& options) {
   Subdivision result;

@@ -9,12 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/splines/bezier_pieces.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
 namespace {
-
-BezierCurve CurveOf(const Points& points) { return BezierCurve::Make(points, nullptr).value(); }
 
 /// sum_i P_i C(n, i) t^i (1 - t)^(n - i) in long double, coordinate `c`.
 long double ByDefinition(const Points& points, long double t, int c) {
@@ -29,7 +28,7 @@ long double ByDefinition(const Points& points, long double t, int c) {
 }
 
 /// de Casteljau's algorithm rounds three times a level, of numbers up to 1.
-double Tolerance(int degree) { return 3 * (degree + 1) * kEpsilon / 2; }
+double CasteljauTolerance(int degree) { return 3 * (degree + 1) * kEpsilon / 2; }
 
 TEST(Bezier, EvaluatesTheBernsteinSum) {
   std::mt19937 random(20261128);
@@ -40,7 +39,8 @@ TEST(Bezier, EvaluatesTheBernsteinSum) {
         double point[kMaxDimension];
         curve.Evaluate(t, point);
         for (int c = 0; c < dimension; ++c) {
-          EXPECT_NEAR(point[c], ByDefinition(curve.control_points(), t, c), Tolerance(degree))
+          EXPECT_NEAR(point[c], ByDefinition(curve.control_points(), t, c),
+                      CasteljauTolerance(degree))
               << "degree " << degree << ", t " << t;
         }
       }
@@ -70,8 +70,8 @@ TEST(Bezier, AgreesWithSciPyAtDegree25) {
     curve.Derivative().Evaluate(reference.t, derivative);
     for (int c = 0; c < 2; ++c) {
       // Both round; coordinates are below 101, legs below 101 n.
-      EXPECT_NEAR(point[c], reference.point[c], 2 * 101 * Tolerance(25));
-      EXPECT_NEAR(derivative[c], reference.derivative[c], 2 * 25 * 101 * Tolerance(25));
+      EXPECT_NEAR(point[c], reference.point[c], 2 * 101 * CasteljauTolerance(25));
+      EXPECT_NEAR(derivative[c], reference.derivative[c], 2 * 25 * 101 * CasteljauTolerance(25));
     }
   }
 }
@@ -101,10 +101,10 @@ TEST(Bezier, BothPartsOfACutAreTheCurve) {
         for (int c = 0; c < 3; ++c) {
           EvaluateBezier(degree, 3, first.data(), s, point);
           EXPECT_NEAR(point[c], ByDefinition(points, static_cast<long double>(s) * cut, c),
-                      2 * Tolerance(degree));
+                      2 * CasteljauTolerance(degree));
           EvaluateBezier(degree, 3, second.data(), s, point);
           EXPECT_NEAR(point[c], ByDefinition(points, cut + (1.0L - cut) * s, c),
-                      2 * Tolerance(degree));
+                      2 * CasteljauTolerance(degree));
         }
       }
     }
@@ -133,7 +133,7 @@ TEST(Bezier, APartIsTheCurveOverItsInterval) {
     for (int c = 0; c < 2; ++c) {
       // Two cuts, one evaluation, and the fraction begin / end rounded once.
       EXPECT_NEAR(point[c], ByDefinition(curve.control_points(), 0.15L + 0.25L * s, c),
-                  4 * Tolerance(11));
+                  4 * CasteljauTolerance(11));
     }
   }
   EXPECT_THROW(curve.Part(0.4, 0.4), std::logic_error);
@@ -156,7 +156,7 @@ TEST(Bezier, RaisingTheDegreeKeepsTheCurve) {
     curve.Evaluate(t, point);
     raised.Evaluate(t, same);
     // Each of the 53 levels rounds three times, then the evaluation.
-    for (int c = 0; c < 2; ++c) EXPECT_NEAR(same[c], point[c], 2 * Tolerance(60));
+    for (int c = 0; c < 2; ++c) EXPECT_NEAR(same[c], point[c], 2 * CasteljauTolerance(60));
   }
   EXPECT_THROW(curve.Raised(54), std::logic_error);
 }

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "splines/basis_functions.h"
+#include "tests/not_a_number.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
 namespace {
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
 const double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string WhyRefused(int degree, bool periodic, const std::vector<double>& knots) {

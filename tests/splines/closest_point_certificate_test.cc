@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
 #include "splines/closest_point.h"
+#include "tests/roundoff.h"
 #include "tests/splines/example_splines.h"
 
 namespace batten {
@@ -131,9 +131,8 @@ Eigen::RowVectorXd RandomMiddle(int dimension, std::mt19937* random) {
 /// does to a distance, on either side of the certificate and in either of its bounds.
 double AllowedGap(const BsplineBasis& basis, int dimension, double size,
                   const Eigen::RowVectorXd& middle, double distance) {
-  const double epsilon = std::numeric_limits<double>::epsilon();
   const double coordinate = middle.cwiseAbs().maxCoeff() + 1.0;
-  const double off = 2.0 * basis.order() * epsilon * coordinate;
+  const double off = 2.0 * basis.order() * kEpsilon * coordinate;
   return std::max(1e-12 * std::max(size, distance), 4.0 * std::sqrt(dimension) * off) +
          kRoundings * distance;
 }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <ostream>
 #include <random>
@@ -14,10 +13,9 @@
 
 #include "splines/bspline_curve.h"
 #include "splines/knot_rules.h"
+#include "tests/roundoff.h"
 
 namespace batten {
-
-inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Not std::uniform_real_distribution, whose numbers differ between standard libraries.
 inline double RandomBetween(double low, double high, std::mt19937* random) {

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <limits>
 #include <ostream>
 #include <random>
 #include <string>
@@ -14,10 +13,9 @@
 #include "splines/basis_functions.h"
 #include "splines/row_block.h"
 #include "splines/row_pack.h"
+#include "tests/roundoff.h"
 
 namespace batten {
-
-inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Rows written down one by one, in any order of Add(): the dense matrix that banded code is
 /// compared with, and a RowSource of the same rows.

@@ -113,19 +113,20 @@ TEST_F(BenchPlugins, IdentityIsOfSolverOptionsPluginAndProblem) {
   EXPECT_EQ(all.size(), 6u);
 }
 
-struct Fault {
+struct FaultInBench {
   std::string plugin;
   std::string stop;     // of every repetition; "": any
   std::string finding;  // of the first
   int status = 0;
   std::string note;
 };
-void PrintTo(const Fault& fault, std::ostream* stream) { *stream << fault.plugin; }
+void PrintTo(const FaultInBench& fault, std::ostream* stream) { *stream << fault.plugin; }
 
-class FaultyPluginInBench : public BenchPlugins, public ::testing::WithParamInterface<Fault> {};
+class FaultyPluginInBench : public BenchPlugins,
+                            public ::testing::WithParamInterface<FaultInBench> {};
 
 TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
-  const Fault& fault = GetParam();
+  const FaultInBench& fault = GetParam();
   json suite = SuiteOf({fault.plugin});
   suite["solvers"] = {"faulty", "cg"};
   if (fault.plugin == "fault_ignores_stop") suite["budgets"]["iterations"] = 30;
@@ -151,24 +152,26 @@ TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
 
 #if defined(__SANITIZE_ADDRESS__)
 // The sanitizer is the first to see it and ends the process of the cell that looks for it.
-const Fault kReadsPastX = {"fault_reads_past_x", "", "crashed", 0, "ended with status 1"};
+const FaultInBench kBenchReadsPastX = {"fault_reads_past_x", "", "crashed", 0,
+                                       "ended with status 1"};
 #else
-const Fault kReadsPastX = {"fault_reads_past_x", "", "reads_past_x", 3, "faulty: reads past x: "};
+const FaultInBench kBenchReadsPastX = {"fault_reads_past_x", "", "reads_past_x", 3,
+                                       "faulty: reads past x: "};
 #endif
 
 INSTANTIATE_TEST_SUITE_P(
     Faults, FaultyPluginInBench,
     ::testing::Values(
-        Fault{"fault_crasher", "crashed", "crashed", 0, "ended by signal 6 (Aborted)"},
-        Fault{"fault_throws", "crashed", "crashed", 0, "threw an exception: no such luck"},
-        Fault{"fault_sleeper", "wall_limit", "wall_limit", 0, "of wall time"},
-        Fault{"fault_worker", "cpu_limit", "cpu_limit", 0, "of processor time"},
-        Fault{"fault_nan", "", "no_finite_end", 0, "its end is no finite number"},
-        Fault{"fault_liar", "", "claim_fails", 3, "claim fails: "},
-        Fault{"fault_ignores_stop", "", "ignores_stop", 0, "ignores stop: "},
-        Fault{"fault_other_options", "", "other_options", 3,
-              "faulty: other options ran: asked memory=5, ran memory=6"},
-        kReadsPastX),
+        FaultInBench{"fault_crasher", "crashed", "crashed", 0, "ended by signal 6 (Aborted)"},
+        FaultInBench{"fault_throws", "crashed", "crashed", 0, "threw an exception: no such luck"},
+        FaultInBench{"fault_sleeper", "wall_limit", "wall_limit", 0, "of wall time"},
+        FaultInBench{"fault_worker", "cpu_limit", "cpu_limit", 0, "of processor time"},
+        FaultInBench{"fault_nan", "", "no_finite_end", 0, "its end is no finite number"},
+        FaultInBench{"fault_liar", "", "claim_fails", 3, "claim fails: "},
+        FaultInBench{"fault_ignores_stop", "", "ignores_stop", 0, "ignores stop: "},
+        FaultInBench{"fault_other_options", "", "other_options", 3,
+                     "faulty: other options ran: asked memory=5, ran memory=6"},
+        kBenchReadsPastX),
     [](const auto& row) { return row.param.plugin.substr(6); });
 
 TEST_F(BenchPlugins, StopsAMemoryHog) {

@@ -59,17 +59,17 @@ TEST(Check, MeasuresTheTaylorSlopeOfATerm) {
               ::testing::ContainsRegex("lowest Taylor slope (1.9|2.0)"));
 }
 
-struct Fault {
+struct FaultInCheck {
   std::string plugin;
   std::string check;   // that must find it
   std::string reason;  // a part of what it says
   std::vector<std::string> flags;
 };
 
-class FaultyPlugin : public ::testing::TestWithParam<Fault> {};
+class FaultyPlugin : public ::testing::TestWithParam<FaultInCheck> {};
 
 TEST_P(FaultyPlugin, IsFound) {
-  const Fault& fault = GetParam();
+  const FaultInCheck& fault = GetParam();
   const TemporaryFolder folder;
   const Ended ended = Check(fault.plugin, folder, fault.flags);
   EXPECT_EQ(ended.signal, 0);
@@ -83,29 +83,32 @@ TEST_P(FaultyPlugin, IsFound) {
 
 #if defined(__SANITIZE_ADDRESS__)
 // The sanitizer is the first to see it and ends the process.
-const Fault kReadsPastX = {"fault_reads_past_x", "descent", "ends the program with status 1", {}};
+const FaultInCheck kCheckReadsPastX = {
+    "fault_reads_past_x", "descent", "ends the program with status 1", {}};
 #else
-const Fault kReadsPastX = {
+const FaultInCheck kCheckReadsPastX = {
     "fault_reads_past_x", "memory", "what stands behind the end of x changes", {}};
 #endif
 
 INSTANTIATE_TEST_SUITE_P(
     Faults, FaultyPlugin,
     ::testing::Values(
-        Fault{"fault_wrong_gradient", "gradient", "the Taylor slope of E is ", {}},
-        Fault{"fault_nan_term", "repeatability", "differs at call ", {}},
-        Fault{"fault_nan", "descent", "it ends where E is no number", {}},
-        Fault{"fault_liar", "claims", "claim", {}},
-        Fault{"fault_ignores_stop", "stop at evaluation", "evaluations and books ", {}},
-        Fault{"fault_ignores_stop", "stop at iterate", "after a stop", {}},
-        Fault{"fault_steps_past_stop",
-              "stop at iterate",
-              "it goes on from the iterate that said stop",
-              {}},
-        Fault{"fault_crasher", "descent", "crashes: Aborted", {}},
-        Fault{"fault_throws", "descent", "throws: no such luck", {}},
-        Fault{"fault_sleeper", "descent", "does not end within 0.5 s", {"--seconds_per_check=0.5"}},
-        kReadsPastX, Fault{"fault_remembers", "repeatability", "two runs part at iterate ", {}}),
+        FaultInCheck{"fault_wrong_gradient", "gradient", "the Taylor slope of E is ", {}},
+        FaultInCheck{"fault_nan_term", "repeatability", "differs at call ", {}},
+        FaultInCheck{"fault_nan", "descent", "it ends where E is no number", {}},
+        FaultInCheck{"fault_liar", "claims", "claim", {}},
+        FaultInCheck{"fault_ignores_stop", "stop at evaluation", "evaluations and books ", {}},
+        FaultInCheck{"fault_ignores_stop", "stop at iterate", "after a stop", {}},
+        FaultInCheck{"fault_steps_past_stop",
+                     "stop at iterate",
+                     "it goes on from the iterate that said stop",
+                     {}},
+        FaultInCheck{"fault_crasher", "descent", "crashes: Aborted", {}},
+        FaultInCheck{"fault_throws", "descent", "throws: no such luck", {}},
+        FaultInCheck{
+            "fault_sleeper", "descent", "does not end within 0.5 s", {"--seconds_per_check=0.5"}},
+        kCheckReadsPastX,
+        FaultInCheck{"fault_remembers", "repeatability", "two runs part at iterate ", {}}),
     [](const auto& row) {
       return row.param.plugin.substr(6) + "_" +
              row.param.check.substr(row.param.check.find_last_of(' ') + 1);

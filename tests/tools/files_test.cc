@@ -10,8 +10,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr char kPoints[] = "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n";
-
 /// A fit that no stop rule but the time limit ends soon: of degree 9 through as many points as
 /// control points, by the slowest method in small steps.
 std::vector<std::string> LongFit(const std::string& points) {
@@ -29,7 +27,7 @@ std::vector<std::string> LongFit(const std::string& points) {
 
 class FitFiles : public ::testing::Test {
  protected:
-  FitFiles() : points_(folder_.Write("points.csv", kPoints)) {}
+  FitFiles() : points_(folder_.Write("points.csv", kSixPoints)) {}
 
   Ended Fit(std::vector<std::string> flags) {
     flags.insert(flags.begin(), {"fit", points_, "--control_points=5"});
@@ -70,7 +68,7 @@ TEST_F(FitFiles, MustDifferFromEachOtherAndFromTheInput) {
   ExpectRefused(Fit({"--out=" + (folder_ / "link")}), {"is read"});
   std::filesystem::create_hard_link(points_, folder_ / "twin");
   ExpectRefused(Fit({"--out=" + (folder_ / "twin")}), {"is read"});
-  EXPECT_EQ(ReadFile(points_), kPoints);
+  EXPECT_EQ(ReadFile(points_), kSixPoints);
 }
 
 TEST_F(FitFiles, MayBeDevices) {

@@ -18,7 +18,7 @@ constexpr double kRhinoEnergy = 4.486845758379909;
 constexpr double kEnergyTolerance = 1e-9 * kRhinoEnergy;
 
 /// `fit` with --out, which must succeed; its fit.json.
-json Fit(std::vector<std::string> arguments, const std::string& input = "") {
+json FitJson(std::vector<std::string> arguments, const std::string& input = "") {
   const TemporaryFolder folder;
   arguments.insert(arguments.begin(), "fit");
   arguments.push_back("--out=" + (folder / "fit.json"));
@@ -71,7 +71,7 @@ TEST(FitCommand, ReachesTheMinimumWithEverySolverOfTheList) {
     std::string name = solver["name"];
     if (solver["needs"] == json::array({"free parameters"})) continue;
     if (!solver["usual_base"].is_null()) name += ":" + solver["usual_base"].get<std::string>();
-    const json fit = Fit({"--problem=rhino_interpolation", "--solver=" + name});
+    const json fit = FitJson({"--problem=rhino_interpolation", "--solver=" + name});
     EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-6) << name;
     EXPECT_EQ(fit["audit"]["verified"], true) << name;
   }
@@ -173,19 +173,19 @@ TEST(FitCommand, TakesFreeParametersAndTheirStarts) {
 }
 
 TEST(FitCommand, ReadsPointsFromStandardInput) {
-  const json fit = Fit({"-", "--closed", "--control_points=80"}, ReadFile(kRhino));
+  const json fit = FitJson({"-", "--closed", "--control_points=80"}, ReadFile(kRhino));
   EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
 }
 
 TEST(FitCommand, ReproducesAStraightLine) {
-  const json fit = Fit({"-", "--control_points=5", "--parameters=chord_length"},
-                       "x,y,z\n0,0,0\n1,2,3\n2,4,6\n4,8,12\n5,10,15\n7,14,21\n");
+  const json fit = FitJson({"-", "--control_points=5", "--parameters=chord_length"},
+                           "x,y,z\n0,0,0\n1,2,3\n2,4,6\n4,8,12\n5,10,15\n7,14,21\n");
   EXPECT_EQ(fit["spline"]["dimension"], 3);
   EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-8);
 }
 
 TEST(FitCommand, FitsOneCoordinate) {
-  const json fit = Fit({"-", "--control_points=4"}, "0\n1\n4\n9\n16\n25\n");
+  const json fit = FitJson({"-", "--control_points=4"}, "0\n1\n4\n9\n16\n25\n");
   EXPECT_EQ(fit["spline"]["dimension"], 1);
   EXPECT_LT(fit["distance"]["max"].get<double>(), 1e-7);  // a parabola is a cubic
 }
@@ -194,20 +194,20 @@ TEST(FitCommand, TakesKnotsAsAListOrFromAFile) {
   const TemporaryFolder folder;
   const std::string points = folder.Write("points.csv", "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n");
   const std::string knots = folder.Write("knots.txt", "# clamped\n0 0 0\n0.5 # middle\n1, 1 1\n");
-  const json uniform = Fit({points, "--degree=2", "--control_points=4"});
-  const json list = Fit({points, "--degree=2", "--knots=0,0,0,.5,1,1,1"});
-  const json file = Fit({points, "--degree=2", "--knots=" + knots});
+  const json uniform = FitJson({points, "--degree=2", "--control_points=4"});
+  const json list = FitJson({points, "--degree=2", "--knots=0,0,0,.5,1,1,1"});
+  const json file = FitJson({points, "--degree=2", "--knots=" + knots});
   EXPECT_EQ(list["spline"], uniform["spline"]);
   EXPECT_EQ(file["spline"], uniform["spline"]);
 }
 
 TEST(FitCommand, TakesGivenParametersAndTheirDomain) {
   const std::string points = "t,x,y\n1,0,0\n2,1,3\n3,2,-1\n4,3,4\n";
-  const json range = Fit({"-", "--parameters=given", "--control_points=4"}, points);
+  const json range = FitJson({"-", "--parameters=given", "--control_points=4"}, points);
   EXPECT_EQ(range["parameters"], json({1.0, 2.0, 3.0, 4.0}));
   EXPECT_EQ(range["spline"]["knots"], json({1.0, 1.0, 1.0, 1.0, 4.0, 4.0, 4.0, 4.0}));
   const json wider =
-      Fit({"-", "--parameters=given", "--control_points=4", "--domain", "-1,6"}, points);
+      FitJson({"-", "--parameters=given", "--control_points=4", "--domain", "-1,6"}, points);
   EXPECT_EQ(wider["spline"]["knots"][0], -1.0);
   EXPECT_EQ(wider["spline"]["knots"][7], 6.0);
 }
@@ -218,7 +218,7 @@ TEST(FitCommand, FollowsKnotAndEndRules) {
   const auto knots = [&](const std::string& flag) {
     std::vector<std::string> arguments = common;
     arguments.push_back(flag);
-    return Fit(arguments, points)["spline"]["knots"];
+    return FitJson(arguments, points)["spline"]["knots"];
   };
   EXPECT_EQ(knots("--knots=uniform"), json({0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0}));
   EXPECT_EQ(knots("--ends=floating"), json({-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0}));
@@ -227,31 +227,31 @@ TEST(FitCommand, FollowsKnotAndEndRules) {
 }
 
 TEST(FitCommand, LetsFlagsOverrideAProblemOfTheCatalogue) {
-  const json plain = Fit({"--problem=rhino"});
+  const json plain = FitJson({"--problem=rhino"});
   EXPECT_NEAR(plain["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
-  const json smaller = Fit({"--problem=rhino", "--control_points=40", "--degree=2"});
+  const json smaller = FitJson({"--problem=rhino", "--control_points=40", "--degree=2"});
   EXPECT_EQ(smaller["spline"]["control_points"].size(), 40u);
   EXPECT_EQ(smaller["spline"]["degree"], 2);
   EXPECT_EQ(smaller["spline"]["periodic"], true);
-  const json open = Fit({"--problem=rhino", "--noclosed"});
+  const json open = FitJson({"--problem=rhino", "--noclosed"});
   EXPECT_EQ(open["spline"]["periodic"], false);
 }
 
 TEST(FitCommand, GivesTheSameAnswerWithoutCompilation) {
-  const json fit = Fit({"--problem=rhino", "--nocompile", "--gradient_tolerance=1e-8"});
+  const json fit = FitJson({"--problem=rhino", "--nocompile", "--gradient_tolerance=1e-8"});
   EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
 }
 
 TEST(FitCommand, TakesTermsAndSolversWithOptions) {
-  const json fit = Fit({"--problem=rhino", "--terms=interpolation/weight=2",
-                        "--solver=lbfgs/memory=5/wolfe=strong"});
+  const json fit = FitJson({"--problem=rhino", "--terms=interpolation/weight=2",
+                            "--solver=lbfgs/memory=5/wolfe=strong"});
   EXPECT_NEAR(fit["energy"].get<double>(), 2 * kRhinoEnergy, 2 * kEnergyTolerance);
   EXPECT_EQ(fit["options"]["memory"], "5");
   EXPECT_EQ(fit["options"]["wolfe"], "strong");
 }
 
 TEST(FitCommand, RunsInNativeMode) {
-  const json fit = Fit({"--problem=rhino", "--mode=native", "--solver=lspia"});
+  const json fit = FitJson({"--problem=rhino", "--mode=native", "--solver=lspia"});
   EXPECT_EQ(fit["mode"], "native");
   EXPECT_EQ(fit["stop"], "step_small");
 }
@@ -309,17 +309,17 @@ TEST(FitCommand, ChoosesTheFairingWeightAndDrawsHow) {
 }
 
 TEST(FitCommand, HoldsConstraintsAndWeighsSpans) {
-  const json held = Fit({kRhino, "--control_points=20", "--solver=banded_qr",
-                         "--constraints=point/t=0/x=100/y=50,natural"});
+  const json held = FitJson({kRhino, "--control_points=20", "--solver=banded_qr",
+                             "--constraints=point/t=0/x=100/y=50,natural"});
   EXPECT_NEAR(held["spline"]["control_points"][0][0].get<double>(), 100.0, 1e-9);
   EXPECT_NEAR(held["spline"]["control_points"][0][1].get<double>(), 50.0, 1e-9);
   // Twice the weight in every span is twice the weight of the term.
-  const json spans = Fit({"-", "--control_points=6", "--solver=banded_qr",
-                          "--terms=interpolation,fairing/weight=1e-3", "--span_weights=2,2,2"},
-                         "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
-  const json term = Fit({"-", "--control_points=6", "--solver=banded_qr",
-                         "--terms=interpolation,fairing/weight=2e-3"},
-                        "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
+  const json spans = FitJson({"-", "--control_points=6", "--solver=banded_qr",
+                              "--terms=interpolation,fairing/weight=1e-3", "--span_weights=2,2,2"},
+                             "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
+  const json term = FitJson({"-", "--control_points=6", "--solver=banded_qr",
+                             "--terms=interpolation,fairing/weight=2e-3"},
+                            "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
   EXPECT_NEAR(spans["energy"].get<double>(), term["energy"].get<double>(), 1e-13);
 }
 

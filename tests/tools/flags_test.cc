@@ -9,11 +9,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr char kPoints[] = "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n";
-
 Ended Fit(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "fit");
-  return RunBatten(std::move(arguments), kPoints);
+  return RunBatten(std::move(arguments), kSixPoints);
 }
 
 TEST(Flags, AnswerANumberOutsideItsRangeWithTheRange) {

@@ -22,6 +22,9 @@
 
 namespace batten {
 
+/// Of an open curve, as a file.
+inline constexpr char kSixPoints[] = "x,y\n0,0\n1,3\n2,-1\n3,4\n5,2\n6,0\n";
+
 inline std::string ReadFile(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;

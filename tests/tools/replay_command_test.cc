@@ -33,15 +33,15 @@ TEST(ReplayCommand, SplitsTimeAndWritesTapesThatReadBack) {
       {"replay", "--problem=rhino", "--solver=lbfgs", "--against=ceres_lbfgs", "--out=" + folder});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("of which evaluation "));
-  const auto json = nlohmann::json::parse(std::ifstream(folder + "/replay.json"));
-  const auto& first = json.at("first");
+  const auto replay = nlohmann::json::parse(std::ifstream(folder + "/replay.json"));
+  const auto& first = replay.at("first");
   // lbfgs on a quadratic asks for one product per iteration beside the gradient.
   EXPECT_GT(first.at("products").get<int>(), 10);
   EXPECT_EQ(first.at("energy_calls").get<int>(), 0);
-  EXPECT_EQ(json.at("second").at("products").get<int>(), 0);
+  EXPECT_EQ(replay.at("second").at("products").get<int>(), 0);
   EXPECT_GT(first.at("seconds").get<double>(), 0.0);
   EXPECT_GT(first.at("evaluation_seconds").get<double>(), 0.0);
-  EXPECT_EQ(json.at("partings").size(), 4U);
+  EXPECT_EQ(replay.at("partings").size(), 4U);
   // A header and one line per request.
   std::ifstream tape(folder + "/tape_1.csv");
   int lines = 0;
