@@ -2,14 +2,17 @@
 // values, and its data and pictures to download. Drawn when it comes into view.
 
 const kFont = 'system-ui, "DejaVu Sans", sans-serif';
+const kTitleSize = 12;  // pixels
+// Where Vega breaks lines: an em space, since it puts names of axes into code, which a newline would break.
+const kBreak = '\u2003';
 function vegaConfig() {
   const dark = scheme === 'dark';
   const text = dark ? '#e4e7ea' : '#1c1f23', line = dark ? '#59616b' : '#9aa2ab';
   const grid = dark ? '#2a3037' : '#e8ebee';
   return {
-    background: dark ? '#15181c' : '#ffffff', font: kFont,
+    background: dark ? '#15181c' : '#ffffff', font: kFont, lineBreak: kBreak,
     axis: { labelColor: text, titleColor: text, gridColor: grid, domainColor: line, tickColor: line,
-            labelFontSize: 12, titleFontSize: 12, titleFontWeight: 'normal', labelOverlap: true },
+            labelFontSize: 12, titleFontSize: kTitleSize, titleFontWeight: 'normal', labelOverlap: true },
     legend: { labelColor: text, titleColor: text, labelFontSize: 12, labelLimit: 230,
               symbolStrokeWidth: 2 },
     header: { labelColor: text, titleColor: text, labelFontSize: 12 },
@@ -165,6 +168,24 @@ const axisOf = (field, title, isLog, extra = {}) => ({
   scale: { ...(isLog ? { type: 'log', nice: false } : { zero: false }), ...extra.scale },
   axis: { format: isLog && field === 'py' ? '~e' : '~g' },
 });
+// A text in lines that are at most so many pixels wide, unless a word is wider. No word ends it alone.
+const ruler = document.createElement('canvas').getContext('2d');
+function inLines(text, width) {
+  ruler.font = `${kTitleSize}px ${kFont}`;
+  const lines = [];
+  for (const word of text.split(/ (?!\S+$)/)) {
+    const longer = `${lines.at(-1)} ${word}`;
+    if (lines.length > 0 && ruler.measureText(longer).width <= width) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines.join(kBreak);
+}
+// The names of both axes in lines no longer than the axes: the other axis with its numbers and its
+// name takes at most 70 pixels, and the legend its lines.
+function withLines(x, y, { width, height, solvers }) {
+  return { x: { ...x, title: inLines(x.title, width - 70) },
+           y: { ...y, title: inLines(y.title, height - legendHeight(solvers, width) - 70) } };
+}
 function looksOf(solvers, channel, looks) {
   return { field: 'solver', type: 'nominal', title: null,
            scale: { domain: solvers, range: solvers.map(solver => lookOf(solver, looks)) } };
@@ -174,6 +195,7 @@ function legendColumns(solvers, width) {
   const longest = solvers.reduce((most, solver) => Math.max(most, solver.length), 0);
   return Math.max(1, Math.min(solvers.length, Math.floor(width / Math.min(280, 55 + 7 * longest))));
 }
+const legendHeight = (solvers, width) => 25 * Math.ceil(solvers.length / legendColumns(solvers, width));
 function colours(solvers, width) {
   const columns = legendColumns(solvers, width);
   return { field: 'solver', type: 'nominal', title: null,
@@ -191,7 +213,7 @@ const kPick = { name: 'pick', select: { type: 'point', fields: ['solver'] }, bin
 
 // Lines of rows {solver, run, px, py, ...}, one per run; `mark` is the shape at one.
 function lineSpec({ width, height, solvers, data, x, y, tooltip, interpolate = 'linear' }) {
-  const shared = { x, y, color: colours(solvers, width) };
+  const shared = { ...withLines(x, y, { width, height, solvers }), color: colours(solvers, width) };
   const dash = { ...looksOf(solvers, 'strokeDash', kDashes) };
   const bright = { condition: { param: 'pick', value: 1 }, value: 0.12 };
   const marks = {
@@ -223,13 +245,12 @@ function dotSpec({ width, height, solvers, x, y, tooltip }) {
   return {
     width, height, autosize: { type: 'fit', contains: 'padding' }, data: { name: 'rows' },
     params: [kZoom], mark: { type: 'point', filled: true, size: 55, opacity: 0.8, clip: true },
-    encoding: { x, y, color, tooltip,
+    encoding: { ...withLines(x, y, { width, height, solvers }), color, tooltip,
                 shape: { ...looksOf(solvers, 'shape', kShapes), legend: color.legend } },
   };
 }
 const heightFor = (width, solvers) =>
-  Math.round(Math.min(420, Math.max(280, width * 0.55)) +
-             25 * Math.ceil(solvers.length / legendColumns(solvers, width)));
+  Math.round(Math.min(420, Math.max(280, width * 0.55)) + legendHeight(solvers, width));
 
 // Some marks on each line of solvers beyond the first eight, those of different lines apart.
 function putMarks(points) {
