@@ -13,6 +13,8 @@ function vegaConfig() {
     background: dark ? '#15181c' : '#ffffff', font: kFont, lineBreak: kBreak,
     axis: { labelColor: text, titleColor: text, gridColor: grid, domainColor: line, tickColor: line,
             labelFontSize: 12, titleFontSize: kTitleSize, titleFontWeight: 'normal', labelOverlap: true },
+    // There it is whole however wide the numbers of the other axis are; in the middle it is not.
+    axisX: { titleAnchor: 'end' },
     legend: { labelColor: text, titleColor: text, labelFontSize: 12, labelLimit: 230,
               symbolStrokeWidth: 2 },
     header: { labelColor: text, titleColor: text, labelFontSize: 12 },
@@ -181,7 +183,7 @@ function inLines(text, width) {
   return lines.join(kBreak);
 }
 // The names of both axes in lines no longer than the axes: the other axis with its numbers and its
-// name takes at most 70 pixels, and the legend its lines.
+// name takes some 70 pixels, and the legend its lines.
 function withLines(x, y, { width, height, solvers }) {
   return { x: { ...x, title: inLines(x.title, width - 70) },
            y: { ...y, title: inLines(y.title, height - legendHeight(solvers, width) - 70) } };
