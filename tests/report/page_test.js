@@ -15,6 +15,7 @@
   const change = (node, value) => { node.value = value; node.dispatchEvent(new Event('change')); };
   const selectOf = label => all('label').find(l => l.textContent.startsWith(label))?.querySelector('select');
   const boxesOf = kind => all(`[data-filter="${kind}"] input[type="checkbox"]`);
+  const reader = { expect, all, change, selectOf, settled };
   const visible = plot => !plot.figure.closest('[hidden]');
 
   try {
@@ -65,13 +66,16 @@
     testVerdicts();
     testLooks();
     testProfiles();
-    await testPairProfiles({ expect, change, selectOf });
-    await testWorkUnits({ expect, change, selectOf });
-    if (doc.bench_notes.length > 0) await testBench();
+    await testPairProfiles(reader);
+    await testWorkUnits(reader);
+    if (doc.bench_notes.length > 0) {
+      testBench();
+      await testCurvesOfBench(reader);
+    }
     await testZoom();
     await testChoices();
     await testFilters();
-    await testPlayer();
+    await testPlayer(reader);
     await testSchemes();
     testSorting();
     testButtonsHaveNames();
@@ -110,35 +114,20 @@
   }
 
   // Whoever comes to the best minimum has come to its own one.
-  async function testBench() {
+  function testBench() {
     expect('the notes are there', document.querySelector('#notes_of_the_benchmark').textContent
       .includes('cells are finished'));
     const shares = (what, basin) => allPlots.filter(plot => plot.title.startsWith(what) && plot.title.endsWith(basin))
       .map(plot => new Map((plot.drawn.data ?? []).map(row => [row.solver, row.py])));  // the last of each
     const best = shares('Runtime distribution', 'best basin'), own = shares('Runtime distribution', 'own basin');
-    expect('own basins stand beside best ones', best.length > 0 && best.length === own.length);
-    expect('own basins are reached more often', own.every((of, k) =>
+    const basins = linesOf('table.csv').filter(line => line.basin !== '');
+    const kinds = new Set(rows.filter(row => row.parameter_kind && basins.some(line => line.problem === row.problem))
+      .map(row => row.parameter_kind));
+    expect('own basins stand beside best ones', best.length === kinds.size && own.length === kinds.size);
+    expect('own basins are reached as often, and more often where a run ends in a second one', own.every((of, k) =>
       [...of].every(([solver, share]) => share >= (best[k].get(solver) ?? 0))) &&
-      own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0))));
-    const hasCurve = row => row.key in curves().runs;
-    expect('each first repetition has its curve, and no other', rows.every(row =>
-      hasCurve(row) === (row.repetition === 1 && typeof row.iterations === 'number')));
-    expect('from the start to the end', rows.filter(hasCurve).every(row => {
-      const { iterations } = curves().runs[row.key];
-      return iterations[0] === 0 && iterations.at(-1) === row.iterations;
-    }));
-    const plot = allPlots.find(p => p.title === 'Curves side by side');
-    const choice = document.querySelector('#player select');
-    expect('the player has all instances', choice.options.length === doc.groups.length);
-    for (const option of choice.options) {
-      change(choice, option.value);
-      await settled();
-      const solvers = new Set(plot.drawn.data.filter(row => row.kind === 'curve').map(row => row.solver));
-      const number = rows.filter(row => String(row.group) === option.value && hasCurve(row)).length;
-      expect(`the player shows ${option.textContent}`, solvers.size === Math.min(number, kMostPanels));
-    }
-    change(choice, choice.options[0].value);
-    await settled();
+      basins.some(line => Number(line.basin) > 1) ===
+        own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0))));
   }
 
   async function testZoom() {
@@ -218,28 +207,6 @@
     expect('no run at all is no error', chosen.length === 0);
     all('[data-filter="problem"] button')[0].click();
     await drawAll();
-  }
-
-  async function testPlayer() {
-    const plot = allPlots.find(p => p.title === 'Curves side by side');
-    if (!plot) return;
-    const button = text => all('#player button').find(b => b.textContent === text);
-    button('First').click();
-    await settled();
-    const first = JSON.stringify(plot.drawn.data);
-    expect('the player begins at iteration 0', plot.drawn.data.every(row => row.iteration === 0));
-    button('Next').click();
-    expect('it steps', JSON.stringify(plot.drawn.data) !== first);
-    button('Last').click();
-    expect('it goes to the end', Number(all('#player input[type="range"]')[0].value) > 0);
-    const curve = plot.drawn.data.filter(row => row.kind === 'curve');
-    expect('curves are drawn', curve.length > 0 && curve.every(row => Number.isFinite(row.px)));
-    const data = plot.drawn.data.filter(row => row.kind === 'point' && row.solver === curve[0].solver);
-    const size = Math.max(...data.map(p => p.px)) - Math.min(...data.map(p => p.px));
-    const best = curve.filter(row => rows.some(r => r.solver === row.solver && r.verdict === 'reached'));
-    const far = Math.max(...data.map(point => Math.min(...best.map(row =>
-      Math.hypot(row.px - point.px, row.py - point.py)))));
-    expect('the last curves pass by the data', far < 0.05 * size);
   }
 
   async function testSchemes() {

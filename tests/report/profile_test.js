@@ -1,6 +1,14 @@
 // Pairs of solvers and work units on the page, against counts made here from the rows as they stand, and
 // against the tables of bench.
 
+// The rows of a table of the folder by the names of its columns.
+function linesOf(name) {
+  const { columns, rows: lists } = doc.tables.find(table => table.name === name) ?? { rows: [] };
+  return lists.map(list => Object.fromEntries(list.map((value, k) => [columns[k], value])));
+}
+// The page of bench_suite.json, which has close pairs and several minima; a small benchmark has none.
+const isOfSuite = doc.name === 'bench';
+
 // The numbers that the caption of a pair profile says.
 function pairCounts(plot) {
   const text = plot.caption.textContent;
@@ -17,8 +25,9 @@ async function testPairProfiles({ expect, change, selectOf }) {
   const { common, fields, rows: lists } = doc.cells;
   const raw = lists.map(list => ({ ...common, ...Object.fromEntries(list.map((value, k) => [fields[k], value])) }));
   const kindOfProblem = new Map(raw.filter(row => row.parameter_kind).map(row => [row.problem, row.parameter_kind]));
-  expect('a pair profile for each kind of parameters',
-    plots.length === new Set(raw.map(row => kindOfProblem.get(row.problem))).size);
+  const kinds = new Set(raw.map(row => kindOfProblem.get(row.problem)));
+  expect('a pair profile for each kind of parameters, where there are two problems',
+    plots.length === (doc.groups.length > 1 ? kinds.size : 0));
   const choose = async (plot, pair) => {
     plot.figure.querySelectorAll('select').forEach((node, k) => change(node, pair[k]));
     await plot.draw();
@@ -94,14 +103,15 @@ async function testPairProfiles({ expect, change, selectOf }) {
   async function testAgainstBench() {
     change(selectOf('Measured by'), 'evaluations');
     change(selectOf('Solved means'), '0.001');
-    const { columns, rows: lines } = doc.tables.find(table => table.name === 'pairs.csv');
-    const table = lines.map(line => Object.fromEntries(line.map((value, k) => [columns[k], value])));
     const refuted = new Set(rows.filter(row => row.verdict === 'refuted').map(row => row.solver));
-    const usable = table.filter(row => row.target === 'gap 0.001' && row.cost === 'evaluations' &&
-      [row.first, row.second].every(name => allSolvers.includes(name) && !refuted.has(name)));
+    const known = linesOf('pairs.csv').filter(row => [row.first, row.second].every(name =>
+      allSolvers.includes(name) && !refuted.has(name)));
+    const usable = known.filter(row => row.target === 'gap 0.001' && row.cost === 'evaluations');
     const close = usable.filter(row => Number(row.first_less) > 0 && Number(row.second_less) > 0);
     const tried = [...close, ...usable.filter((_, k) => k % 25 === 0)];
-    expect('some pairs of bench are to be compared', close.length > 0 && tried.length > 5);
+    expect('each pair of bench can be compared', known.every(row =>
+      usable.some(({ first, second }) => first === row.first && second === row.second)));
+    if (isOfSuite) expect('some pairs of bench are close', close.length > 0 && tried.length > 5);
     const repetitions = new Set(raw.map(row => row.repetition)).size;
     for (const row of tried) {
       const sum = { first: 0, second: 0, equal: 0, neither: 0, instances: 0 };
@@ -133,16 +143,16 @@ async function testWorkUnits({ expect, change, selectOf }) {
   if (!table) return;
   const fields = ['problem', 'terms', 'data_seed', 'start_seed', 'solver', 'seed'];
   const idOf = row => fields.map(field => row[field]).join('|');
-  const lines = new Map(table.rows.map(list => Object.fromEntries(list.map((value, k) => [table.columns[k], value])))
-    .map(line => [idOf(line), line]));
+  const lines = new Map(linesOf('table.csv').map(line => [idOf(line), line]));
   const runs = new Map(rows.map(row => [idOf(row), rows.filter(other => idOf(other) === idOf(row))]));
-  const known = [...runs].filter(([id, some]) => lines.get(id)?.work_units && !some.some(isOverlapped));
+  const timed = [...lines].filter(([, line]) => line.work_units !== '').map(([id]) => id);
+  const known = timed.filter(id => !runs.get(id)?.some(isOverlapped)).map(id => [id, runs.get(id) ?? []]);
   const isNear = (a, b) => Math.abs(a - b) <= 1e-12 * Math.abs(b);
-  expect('work units of runs are those of table.csv', known.length > 10 && known.every(([id, some]) =>
+  expect('work units of runs are those of table.csv', timed.length > 0 && known.every(([id, some]) =>
     isNear(median(some.map(row => row.work_units)), Number(lines.get(id).work_units))));
   expect('basins are those of table.csv', [...runs].every(([id, some]) =>
     !lines.has(id) || some.every(row => String(row.basin ?? '') === lines.get(id).basin)));
-  expect('some end in a second basin', rows.some(row => row.basin === 2));
+  if (isOfSuite) expect('some end in a second basin', rows.some(row => row.basin === 2));
 
   const unitOfLine = row => {
     const line = lines.get(idOf(row));
@@ -155,12 +165,13 @@ async function testWorkUnits({ expect, change, selectOf }) {
     return plot.drawn.data.filter(point => point.iteration > 0);
   };
   const units = await drawn('work_units'), seconds = await drawn('seconds');
-  expect('convergence along work units', units.length > 10 && units.length === seconds.length && units.every((point, k) => {
+  expect('convergence along work units', units.length > 0 && units.length === seconds.length && units.every((point, k) => {
     const row = rows.find(({ key }) => key === point.key);
     return isNear(point.px * unitOfLine(row), seconds[k].px);
   }));
   change(selectOf('Along'), 'iteration');
   const reached = rows.filter(row => costOf(row, 0.1, 'seconds', false) < Infinity);
-  expect('work units to a target', reached.length > 10 && reached.every(row =>
+  const haveCome = rows.filter(row => row.verdict !== 'refuted' && traces()[row.key]?.[7][2][0] != null);
+  expect('work units to a target', haveCome.length > 0 && reached.length === haveCome.length && reached.every(row =>
     isNear(costOf(row, 0.1, 'work_units', false) * unitOfLine(row), costOf(row, 0.1, 'seconds', false))));
 }
