@@ -223,19 +223,19 @@ TEST(AndersonPaper, TellsUndampedTdmOnOurExampleAndJudgesByThePapersAlone) {
     ExperimentTables made;
     CsvTable& table = made[""] = CsvTable(FreeRunColumns());
     for (const std::string& example : PaperExampleNames()) {
-      Add({{"example", example},
-           {"solver", kUndampedTdm},
-           {"start_energy", "2"},
-           {"foot_energy", end}},
-          &table);
+      AddCells({{"example", example},
+                {"solver", kUndampedTdm},
+                {"start_energy", "2"},
+                {"foot_energy", end}},
+               &table);
     }
     return made;
   };
   const Experiment experiment = AndersonPaperExamples();
   const ExperimentTables diverging = tables("3"), falling = tables("1");
   const ExperimentTables falls_on_ours = WithOurExample(diverging, falling);
-  EXPECT_EQ(Verdict(experiment, falls_on_ours, 4), kHolds);
-  EXPECT_EQ(Verdict(experiment, WithOurExample(falling, diverging), 4), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(experiment, falls_on_ours, 4), kHolds);
+  EXPECT_EQ(VerdictOn(experiment, WithOurExample(falling, diverging), 4), kDoesNotHold);
   EXPECT_THAT(experiment.claims[4].judge(falls_on_ours).because,
               HasSubstr("crawling (ours), not counted: 2.00 to 1.00"));
 }
