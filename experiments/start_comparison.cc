@@ -51,6 +51,9 @@ std::vector<CurveShape> BasinShapes(const CurveFit& fit, const std::vector<Basin
   return shapes;
 }
 
+/// Empty where there is none: the median of no runs.
+std::string NumberCell(double value) { return std::isfinite(value) ? NumberText(value) : ""; }
+
 /// What the curves that a solver's runs end in are like, as cells.
 std::vector<std::string> EndCells(const std::vector<int>& basins_of_ends,
                                   const std::vector<CurveShape>& shapes) {
@@ -63,7 +66,7 @@ std::vector<std::string> EndCells(const std::vector<int>& basins_of_ends,
   }
   const double share =
       lengths.empty() ? std::nan("") : with_loops / static_cast<double>(lengths.size());
-  return {NumberText(Median(lengths)), NumberText(share)};
+  return {NumberCell(Median(lengths)), NumberCell(share)};
 }
 
 CsvTable SolverTable(const std::string& problem, const StartComparisonSpec& spec,
@@ -94,11 +97,11 @@ CsvTable SolverTable(const std::string& problem, const StartComparisonSpec& spec
                                     std::to_string(reached),
                                     std::to_string(best),
                                     std::to_string(different.size()),
-                                    NumberText(Median(energies)),
-                                    NumberText(least)};
+                                    NumberCell(Median(energies)),
+                                    NumberCell(least)};
     for (std::string& cell : EndCells(ended_in, shapes)) row.push_back(std::move(cell));
-    row.push_back(NumberText(Median(iterations)));
-    row.push_back(NumberText(Median(seconds)));
+    row.push_back(NumberCell(Median(iterations)));
+    row.push_back(NumberCell(Median(seconds)));
     table.AddRow(row);
   }
   return table;
@@ -106,8 +109,8 @@ CsvTable SolverTable(const std::string& problem, const StartComparisonSpec& spec
 
 /// A basin's shape as cells.
 std::vector<std::string> ShapeCells(const CurveShape& shape) {
-  return {NumberText(shape.length), NumberText(shape.turning), std::to_string(shape.num_free_loops),
-          NumberText(shape.max_distance_to_data)};
+  return {NumberCell(shape.length), NumberCell(shape.turning), std::to_string(shape.num_free_loops),
+          NumberCell(shape.max_distance_to_data)};
 }
 
 CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
@@ -123,8 +126,8 @@ CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
   CsvTable table(columns);
   for (int basin = 0; basin < CountBasins(basins); ++basin) {
     const BasinEnd& first = ends[FirstEnd(basins, basin)];
-    std::vector<std::string> row = {problem, std::to_string(basin + 1), NumberText(first.energy),
-                                    NumberText(first.energy_at_foot_points)};
+    std::vector<std::string> row = {problem, std::to_string(basin + 1), NumberCell(first.energy),
+                                    NumberCell(first.energy_at_foot_points)};
     for (std::string& cell : ShapeCells(shapes[static_cast<std::size_t>(basin)])) {
       row.push_back(std::move(cell));
     }
@@ -134,7 +137,7 @@ CsvTable BasinTable(const std::string& problem, const StartComparisonSpec& spec,
         if (runs[k].solver == s && basins[k] == basin) seconds.push_back(runs[k].run.seconds);
       }
       row.push_back(std::to_string(seconds.size()));
-      row.push_back(NumberText(Median(seconds)));
+      row.push_back(NumberCell(Median(seconds)));
     }
     table.AddRow(row);
   }

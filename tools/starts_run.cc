@@ -16,7 +16,7 @@ namespace {
 
 std::string Shown(const std::string& cell) {
   double value = 0.0;
-  if (!ParseNumber(cell, &value)) return cell == "nan" ? "-" : cell;
+  if (!ParseNumber(cell, &value)) return cell.empty() ? "-" : cell;
   const bool is_count = value == std::floor(value) && std::abs(value) < 1e6;
   return is_count ? cell : ShortNumber(value, 5);
 }

@@ -21,6 +21,7 @@ std::vector<std::map<std::string, std::string>> Rows(const std::string& text) {
     std::vector<std::string> cells;
     std::stringstream stream(line);
     for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    if (!line.empty() && line.back() == ',') cells.emplace_back();
     return cells;
   };
   const std::vector<std::string> lines = Lines(text);
@@ -48,6 +49,16 @@ TEST(CompareStarts, CountsBasinsOfEverySolver) {
   EXPECT_THAT(solvers[1], HasSubstr("dolphin_free,foot_newton,3,"));
   EXPECT_EQ(Lines(ReadFile(folder / "out/starts_runs.csv")).size(), 7U);
   EXPECT_GE(Lines(ReadFile(folder / "out/starts_basins_dolphin_free.csv")).size(), 2U);
+}
+
+TEST(CompareStarts, LeavesFieldsEmptyOfASolverThatDoesNotRun) {
+  const TemporaryFolder folder;
+  const Ended ended = RunBatten({"compare", "--problems=rhino_free", "--solvers=gim,foot_newton",
+                                 "--starts=1", "--out=" + (folder / "out"), "--quiet"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto solvers = Lines(ReadFile(folder / "out/starts_solvers.csv"));
+  ASSERT_EQ(solvers.size(), 3U);
+  EXPECT_EQ(solvers[1], "rhino_free,gim,0,0,0,0,,,,,,");
 }
 
 TEST(CompareStarts, SaysOfEveryBasinWhatItsCurveIsLike) {
