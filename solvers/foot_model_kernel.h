@@ -88,6 +88,20 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     model.span_energies_[span] = common.energy.Sum();
   }
 
+  /// Calls body with what is known at each pack of points, w, w times the factor a of g g', and
+  /// C' . r.
+  template <typename Pack, typename Body>
+  inline __attribute__((always_inline)) void ForEachEliminated(int span, const Body& body) const {
+    this->template ForEachPack<Pack>(span, [&](const PointPack<Pack>& pack) {
+      AtPoints<Pack> at;
+      this->EvaluateCurve(span, pack, &at);
+      this->EvaluateBasis(span, pack, &at);
+      Pack along;
+      const Pack a = this->Eliminate(at, pack, &along);
+      body(at, pack.weight, pack.weight * a, along);
+    });
+  }
+
   /// B B' (x) M with M = w (I - a C' C''): the products of basis functions times M's upper
   /// triangle.
   template <typename Pack>
@@ -97,35 +111,30 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     std::fill_n(blocks, Pairs(k) * num_entries, Pack(0.0));
     CommonSums<Pack> common;
     Clear(&common);
-    this->template ForEachPack<Pack>(span, [&](const PointPack<Pack>& pack) {
-      AtPoints<Pack> at;
-      this->EvaluateCurve(span, pack, &at);
-      this->EvaluateBasis(span, pack, &at);
-      const Pack w = pack.weight;
-      Pack along;
-      const Pack wa = w * this->Eliminate(at, pack, &along);
-      Pack m[Pairs(kDimension)], v[kDimension];
-      for (int e = 0, entry = 0; e < d; ++e) {
-        common.energy = common.energy + w * at.r[e] * at.r[e];
-        v[e] = w * at.r[e] - wa * along * at.first[e];
-        m[entry] = w - wa * at.first[e] * at.first[e];
-        ++entry;
-        for (int f = e + 1; f < d; ++f) m[entry++] = Pack(0.0) - wa * at.first[e] * at.first[f];
-      }
-      for (int j = 0, pair = 0; j < k; ++j) {
-        common.diagonal[j] = common.diagonal[j] + w * at.basis[j] * at.basis[j];
-        for (int e = 0; e < d; ++e) {
-          common.gradient[j * d + e] = common.gradient[j * d + e] + at.basis[j] * v[e];
-        }
-        for (int l = j; l < k; ++l, ++pair) {
-          const Pack product = at.basis[j] * at.basis[l];
-          for (int entry = 0; entry < num_entries; ++entry) {
-            Pack& sum = blocks[pair * num_entries + entry];
-            sum = sum + product * m[entry];
+    ForEachEliminated<Pack>(
+        span, [&](const AtPoints<Pack>& at, const Pack& w, const Pack& wa, const Pack& along) {
+          Pack m[Pairs(kDimension)], v[kDimension];
+          for (int e = 0, entry = 0; e < d; ++e) {
+            common.energy = common.energy + w * at.r[e] * at.r[e];
+            v[e] = w * at.r[e] - wa * along * at.first[e];
+            m[entry] = w - wa * at.first[e] * at.first[e];
+            ++entry;
+            for (int f = e + 1; f < d; ++f) m[entry++] = Pack(0.0) - wa * at.first[e] * at.first[f];
           }
-        }
-      }
-    });
+          for (int j = 0, pair = 0; j < k; ++j) {
+            common.diagonal[j] = common.diagonal[j] + w * at.basis[j] * at.basis[j];
+            for (int e = 0; e < d; ++e) {
+              common.gradient[j * d + e] = common.gradient[j * d + e] + at.basis[j] * v[e];
+            }
+            for (int l = j; l < k; ++l, ++pair) {
+              const Pack product = at.basis[j] * at.basis[l];
+              for (int entry = 0; entry < num_entries; ++entry) {
+                Pack& sum = blocks[pair * num_entries + entry];
+                sum = sum + product * m[entry];
+              }
+            }
+          }
+        });
     Keep(span, common);
     double* sums = model.SpanSums(span);
     for (int j = 0, pair = 0; j < k; ++j) {
@@ -150,34 +159,29 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     std::fill_n(products, Pairs(k), Pack(0.0));
     CommonSums<Pack> common;
     Clear(&common);
-    this->template ForEachPack<Pack>(span, [&](const PointPack<Pack>& pack) {
-      AtPoints<Pack> at;
-      this->EvaluateCurve(span, pack, &at);
-      this->EvaluateBasis(span, pack, &at);
-      const Pack w = pack.weight;
-      Pack along;
-      const Pack wa = w * this->Eliminate(at, pack, &along);
-      for (int e = 0; e < d; ++e) common.energy = common.energy + w * at.r[e] * at.r[e];
-      Pack g[kSize];
-      for (int j = 0; j < k; ++j) {
-        for (int e = 0; e < d; ++e) {
-          Pack& entry = g[j * d + e];
-          entry = at.basis[j] * at.first[e] + at.slope[j] * at.r[e];
-          common.gradient[j * d + e] =
-              common.gradient[j * d + e] + (w * at.basis[j] * at.r[e] - wa * along * entry);
-        }
-      }
-      for (int j = 0, pair = 0; j < k; ++j) {
-        const Pack weighted = w * at.basis[j];
-        for (int l = j; l < k; ++l, ++pair) {
-          products[pair] = products[pair] + weighted * at.basis[l];
-        }
-      }
-      for (int x = 0, pair = 0; x < size; ++x) {
-        const Pack factor = wa * g[x];
-        for (int y = x; y < size; ++y, ++pair) triangle[pair] = triangle[pair] - factor * g[y];
-      }
-    });
+    ForEachEliminated<Pack>(
+        span, [&](const AtPoints<Pack>& at, const Pack& w, const Pack& wa, const Pack& along) {
+          for (int e = 0; e < d; ++e) common.energy = common.energy + w * at.r[e] * at.r[e];
+          Pack g[kSize];
+          for (int j = 0; j < k; ++j) {
+            for (int e = 0; e < d; ++e) {
+              Pack& entry = g[j * d + e];
+              entry = at.basis[j] * at.first[e] + at.slope[j] * at.r[e];
+              common.gradient[j * d + e] =
+                  common.gradient[j * d + e] + (w * at.basis[j] * at.r[e] - wa * along * entry);
+            }
+          }
+          for (int j = 0, pair = 0; j < k; ++j) {
+            const Pack weighted = w * at.basis[j];
+            for (int l = j; l < k; ++l, ++pair) {
+              products[pair] = products[pair] + weighted * at.basis[l];
+            }
+          }
+          for (int x = 0, pair = 0; x < size; ++x) {
+            const Pack factor = wa * g[x];
+            for (int y = x; y < size; ++y, ++pair) triangle[pair] = triangle[pair] - factor * g[y];
+          }
+        });
     double* sums = model.SpanSums(span);
     for (int x = 0, pair = 0; x < size; ++x) {
       for (int y = x; y < size; ++y, ++pair) sums[x * size + y] = triangle[pair].Sum();
