@@ -3,43 +3,11 @@
 #include <vector>
 
 #include "splines/banded_rows.h"
-#include "splines/row_pack.h"
+#include "splines/block_energy.h"
+#include "splines/row_window.h"
 
 namespace batten {
 namespace {
-
-/// The window's rows of an n x d array: where they stand, or copied together if they wrap.
-class Window {
- public:
-  explicit Window(const RowShape& shape)
-      : shape_(shape), copy_(static_cast<std::size_t>(shape.width) * shape.dimension) {}
-
-  const double* Gather(const double* all, int first_column) {
-    if (first_column + shape_.width <= shape_.num_columns) return all + At(first_column);
-    for (int j = 0; j < shape_.width; ++j) {
-      std::copy_n(all + At((first_column + j) % shape_.num_columns), shape_.dimension,
-                  copy_.data() + At(j));
-    }
-    return copy_.data();
-  }
-  void Add(const double* values, int first_column, double* all) const {
-    const int d = shape_.dimension;
-    if (first_column + shape_.width <= shape_.num_columns) {
-      double* target = all + At(first_column);
-      for (int k = 0; k < shape_.width * d; ++k) target[k] += values[k];
-      return;
-    }
-    for (int j = 0; j < shape_.width; ++j) {
-      double* target = all + At((first_column + j) % shape_.num_columns);
-      for (int c = 0; c < d; ++c) target[c] += values[At(j) + c];
-    }
-  }
-
- private:
-  std::size_t At(int row) const { return static_cast<std::size_t>(row) * shape_.dimension; }
-  RowShape shape_;
-  std::vector<double> copy_;
-};
 
 /// Sum whose error does not grow with the number of terms (Knuth's two-sum, without branches).
 class CompensatedSum {
@@ -58,85 +26,18 @@ class CompensatedSum {
   double lost_ = 0.0;
 };
 
-/// One coordinate of A P - Q on the block's rows, or of A P without right-hand sides.
-template <bool kWithData>
-void ResidualOfCoordinate(const RowShape& shape, const RowBlock& block, const double* points, int c,
-                          RowPack* residual) {
-  const int packs = block.stride / kPackLanes;
-  const RowPack* q = AsPacks(block.right_hand_sides) + c * packs;
-  for (int i = 0; i < packs; ++i) residual[i] = kWithData ? -q[i] : RowPack{};
-  for (int j = 0; j < shape.width; ++j) {
-    const RowPack* a = AsPacks(block.coefficients) + j * packs;
-    const RowPack point = Broadcast(points[j * shape.dimension + c]);
-    for (int i = 0; i < packs; ++i) residual[i] += a[i] * point;
-  }
-}
-
-/// gradient[j * dimension + c] = factor * a_j' residual.
-void GradientOfCoordinate(const RowShape& shape, const RowBlock& block, const RowPack* residual,
-                          int c, double factor, double* gradient) {
-  const int packs = block.stride / kPackLanes;
-  for (int j = 0; j < shape.width; ++j) {
-    const RowPack* a = AsPacks(block.coefficients) + j * packs;
-    gradient[j * shape.dimension + c] = factor * DotPacks(a, residual, packs);
-  }
-}
-
-/// ||A P - Q||^2 of a block; with kGradient, gradient (width x dimension) = 2 A'(A P - Q).
-template <int kWidth, int kDimension, bool kGradient, bool kWithData>
-double EvaluateBlock(const RowShape& shape, const RowBlock& block, const double* points,
-                     double* gradient) {
-  const int packs = block.stride / kPackLanes;
-  if constexpr (kWidth < 0) {
-    double energy = 0.0;
-    RowPack residual[kMaxRowsPerBlock / kPackLanes];
-    for (int c = 0; c < shape.dimension; ++c) {
-      ResidualOfCoordinate<kWithData>(shape, block, points, c, residual);
-      energy += DotPacks(residual, residual, packs);
-      if (kGradient) GradientOfCoordinate(shape, block, residual, c, 2.0, gradient);
-    }
-    return energy;
-  } else {
-    constexpr int kEntries = kWidth * kDimension;
-    RowPack point[kEntries];
-    RowPack sum[kEntries] = {};
-    RowPack energy = {};
-    for (int k = 0; k < kEntries; ++k) point[k] = Broadcast(points[k]);
-    const RowPack* a = AsPacks(block.coefficients);
-    const RowPack* q = AsPacks(block.right_hand_sides);
-    for (int i = 0; i < packs; ++i) {
-      RowPack residual[kDimension];
-      for (int c = 0; c < kDimension; ++c) {
-        residual[c] = kWithData ? -q[c * packs + i] : RowPack{};
-        for (int j = 0; j < kWidth; ++j) {
-          residual[c] += a[j * packs + i] * point[j * kDimension + c];
-        }
-        energy += residual[c] * residual[c];
-        if (!kGradient) continue;
-        for (int j = 0; j < kWidth; ++j) sum[j * kDimension + c] += a[j * packs + i] * residual[c];
-      }
-    }
-    for (int k = 0; kGradient && k < kEntries; ++k) gradient[k] = 2.0 * SumOfLanes(sum[k]);
-    return SumOfLanes(energy);
-  }
-}
-
-template <int kWidth, int kDimension, bool kGradient, bool kWithData>
-double EvaluateAll(const BandedRows& rows, const double* points, double* gradient) {
-  RowShape shape = rows.shape();
-  if (kWidth > 0) {  // known to the loops over the window too
-    shape.width = kWidth;
-    shape.dimension = kDimension;
-  }
-  Window window(shape);
+/// ||A P - Q||^2 by kernel, block by block; to gradient, unless it is null, 2 A'(A P - Q) is added.
+double SumOfBlocks(const BandedRows& rows, BlockEnergyKernel* kernel, const double* points,
+                   double* gradient) {
+  const RowShape& shape = rows.shape();
+  RowWindow window(shape);
   std::vector<double> part(static_cast<std::size_t>(shape.width) * shape.dimension);
   CompensatedSum energy;
   for (std::size_t index = 0; index < rows.num_blocks(); ++index) {
     const RowBlock block = rows.BlockAndPrefetch(index);
     const double* near = window.Gather(points, block.first_column);
-    energy.Add(
-        EvaluateBlock<kWidth, kDimension, kGradient, kWithData>(shape, block, near, part.data()));
-    if (kGradient) window.Add(part.data(), block.first_column, gradient);
+    energy.Add(kernel(shape, block, near, part.data()));
+    if (gradient != nullptr) window.Add(part.data(), block.first_column, gradient);
   }
   return energy.value();
 }
@@ -144,22 +45,17 @@ double EvaluateAll(const BandedRows& rows, const double* points, double* gradien
 }  // namespace
 
 double BandedRows::Evaluate(const double* control_points, double* gradient) const {
-  return WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
-    if (gradient == nullptr) {
-      return EvaluateAll<width, dimension, false, true>(*this, control_points, nullptr);
-    }
-    return EvaluateAll<width, dimension, true, true>(*this, control_points, gradient);
-  });
+  const auto quantity =
+      gradient == nullptr ? BlockQuantity::kEnergy : BlockQuantity::kEnergyAndGradient;
+  return SumOfBlocks(*this, FindBlockEnergyKernel(shape_, quantity), control_points, gradient);
 }
 
 double BandedRows::SquaredNormOfProduct(const double* v) const {
-  return WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
-    return EvaluateAll<width, dimension, false, false>(*this, v, nullptr);
-  });
+  return SumOfBlocks(*this, FindBlockEnergyKernel(shape_, BlockQuantity::kProductNorm), v, nullptr);
 }
 
 void BandedRows::Residuals(const double* control_points, double* residuals) const {
-  Window window(shape_);
+  RowWindow window(shape_);
   RowPack residual[kMaxRowsPerBlock / kPackLanes];
   const double* value = reinterpret_cast<const double*>(residual);
   const int d = shape_.dimension;
@@ -175,7 +71,7 @@ void BandedRows::Residuals(const double* control_points, double* residuals) cons
 }
 
 void BandedRows::AddTransposedProduct(const double* r, double* product) const {
-  Window window(shape_);
+  RowWindow window(shape_);
   std::vector<double> part(static_cast<std::size_t>(shape_.width) * shape_.dimension);
   RowPack coordinate[kMaxRowsPerBlock / kPackLanes] = {};
   double* value = reinterpret_cast<double*>(coordinate);
@@ -193,7 +89,7 @@ void BandedRows::AddTransposedProduct(const double* r, double* product) const {
 }
 
 void BandedRows::AddRoundingBound(const double* control_points, double* bound) const {
-  Window window(shape_);
+  RowWindow window(shape_);
   const int d = shape_.dimension;
   std::vector<double> part(static_cast<std::size_t>(shape_.width) * d);
   for (std::size_t index = 0; index < num_blocks(); ++index) {
