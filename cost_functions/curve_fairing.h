@@ -31,6 +31,10 @@ struct CurveFairingResidual {
   static constexpr int NumResiduals(int dimension) {
     return std::max(1, dimension * (dimension - 1) / 2);
   }
+  /// The curvature of quadratics jumps at every knot: hardly anybody makes them fair by it.
+  static constexpr bool CompiledFor(int degree, int dimension) {
+    return degree > 2 && dimension > 1;
+  }
 
   CurveFairingResidual(const OptionValues& options, double factor)
       : points(options.Integer("points")), factor_(factor) {}

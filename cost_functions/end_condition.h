@@ -16,8 +16,9 @@ struct EndResidual {
   static constexpr bool kAffine = true;
   static constexpr int kDerivatives = kDerivative;
   static constexpr bool kOnlyHighestDerivative = true;
-  static constexpr bool kFewSites = true;
   static constexpr int NumResiduals(int dimension) { return dimension; }
+  /// There are one or two sites however many the data.
+  static constexpr bool CompiledFor(int /*degree*/, int /*dimension*/) { return false; }
 
   explicit EndResidual(std::shared_ptr<const Sites> ends) : ends_(std::move(ends)) {}
   std::shared_ptr<const Sites> MakeSites(const FitSetting& /*setting*/) const { return ends_; }

@@ -19,6 +19,8 @@ struct FairingResidual {
   static constexpr int kDerivatives = kDerivative;
   static constexpr bool kOnlyHighestDerivative = true;
   static constexpr int NumResiduals(int dimension) { return dimension; }
+  /// There are few sites in a span, and their rows are asked for once.
+  static constexpr bool CompiledFor(int degree, int /*dimension*/) { return degree == 3; }
 
   explicit FairingResidual(const OptionValues& options)
       : scale_free(options.Word("units") == "scale_free") {}

@@ -16,12 +16,18 @@
 
 namespace batten {
 
-/// Whether a functor says (kFewSites) that it has one or two sites however many the data: compiled
-/// for sizes known at run time alone.
+/// Whether a functor is compiled for one of the common pairs of sizes: all of them, unless it says
+/// otherwise (CompiledFor).
 template <typename Functor, typename = void>
-struct HasFewSites : std::false_type {};
+struct CompiledSizes {
+  static constexpr bool Have(int /*degree*/, int /*dimension*/) { return true; }
+};
 template <typename Functor>
-struct HasFewSites<Functor, std::enable_if_t<Functor::kFewSites>> : std::true_type {};
+struct CompiledSizes<Functor, std::void_t<decltype(Functor::CompiledFor(3, 2))>> {
+  static constexpr bool Have(int degree, int dimension) {
+    return Functor::CompiledFor(degree, dimension);
+  }
+};
 
 /// Spreads one residual functor over its sites. A functor is a small copyable struct:
 ///
@@ -87,26 +93,26 @@ class FunctorFamily final : public BlockFamily, private RowSource {
   /// Calls body with the kernel of the sizes at hand: compiled for the common ones.
   template <typename Body>
   auto WithKernel(Body body) const {
-    if constexpr (HasFewSites<Functor>::value) {
-      return body(MakeAnyKernel());
-    } else {
-      return WithStaticKernel(body);
-    }
-  }
-  template <typename Body>
-  auto WithStaticKernel(Body body) const {
-    const int p = setting_.basis->degree();
-    const int d = setting_.dimension;
-    if (setting_.use_static_sizes) {
-      if (p == 3 && d == 2) return body(FunctorKernel<Functor, 3, 2>(setting_, *sites_, functor_));
+    if (IsOfSizes<3, 2>()) return WithSizes<3, 2>(body);
 #ifndef BATTEN_ONE_STATIC_SIZE  // under sanitizers each size takes the compiler up to a minute
-      if (p == 3 && d == 1) return body(FunctorKernel<Functor, 3, 1>(setting_, *sites_, functor_));
-      if (p == 3 && d == 3) return body(FunctorKernel<Functor, 3, 3>(setting_, *sites_, functor_));
-      if (p == 2 && d == 2) return body(FunctorKernel<Functor, 2, 2>(setting_, *sites_, functor_));
-      if (p == 5 && d == 2) return body(FunctorKernel<Functor, 5, 2>(setting_, *sites_, functor_));
+    if (IsOfSizes<3, 1>()) return WithSizes<3, 1>(body);
+    if (IsOfSizes<3, 3>()) return WithSizes<3, 3>(body);
+    if (IsOfSizes<2, 2>()) return WithSizes<2, 2>(body);
+    if (IsOfSizes<5, 2>()) return WithSizes<5, 2>(body);
 #endif
-    }
     return body(MakeAnyKernel());
+  }
+  template <int P, int D>
+  bool IsOfSizes() const {
+    return setting_.use_static_sizes && setting_.basis->degree() == P && setting_.dimension == D;
+  }
+  template <int P, int D, typename Body>
+  auto WithSizes(Body body) const {
+    if constexpr (CompiledSizes<Functor>::Have(P, D)) {
+      return body(FunctorKernel<Functor, P, D>(setting_, *sites_, functor_));
+    } else {
+      return body(MakeAnyKernel());
+    }
   }
 
   int SpanOf(int block) const {

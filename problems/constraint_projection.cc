@@ -1,7 +1,6 @@
 #include "problems/constraint_projection.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -209,12 +208,15 @@ bool CheckForContradictions(const Problem& problem, std::string* error) {
     part.jacobian.row(i) /= norm;
     part.h[i] /= norm;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(part.jacobian, Eigen::ComputeFullU);
-  const Eigen::VectorXd& values = svd.singularValues();
+  // With J P = Q R of rank r the columns of Q beyond r combine the equations to 0 = h'q.
   constexpr double kDependent = 1e-9;
-  for (Eigen::Index i = 0; i < svd.matrixU().cols(); ++i) {
-    if (i < values.size() && values[i] > kDependent) continue;
-    const Eigen::VectorXd combination = svd.matrixU().col(i);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(part.jacobian);
+  const Eigen::MatrixXd q = qr.householderQ();
+  const Eigen::Index most = std::min(part.jacobian.rows(), part.jacobian.cols());
+  Eigen::Index rank = 0;
+  while (rank < most && std::abs(qr.matrixR()(rank, rank)) > kDependent) ++rank;
+  for (Eigen::Index i = rank; i < q.cols(); ++i) {
+    const Eigen::VectorXd combination = q.col(i);
     if (std::abs(combination.dot(part.h)) <= kDependent) continue;
     std::set<std::string> names;
     for (Eigen::Index k = 0; k < combination.size(); ++k) {
