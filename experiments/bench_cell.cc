@@ -203,8 +203,8 @@ std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
   const std::unique_ptr<Problem> problem = ProblemOf(suite, cell);
   const NameSpec& solver = suite.solvers[cell.solver];
   const RunSpec spec = RuleOf(suite, cell);
-  const bool keeps = KeepsIterates(suite, cell) && FitsIterates(*problem, suite.keep_iterates);
-  const std::size_t most_iterates = keeps ? static_cast<std::size_t>(suite.keep_iterates) : 0;
+  const std::size_t most_iterates =
+      KeepsIterates(suite, cell) ? MostIterates(*problem, suite.keep_iterates) : 0;
   WarmUp(*problem, solver, spec, suite.warm_up);
   ComparisonRow row =
       RunOnce(*problem, solver, spec, most_iterates, suite.problems[cell.problem].label);

@@ -144,7 +144,7 @@ std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, i
 }
 
 bool KeepsIterates(const BenchSuite& suite, const BenchCell& cell) {
-  return suite.keep_iterates > 0 && cell.repetition == 1;
+  return suite.keep_iterates != 0 && cell.repetition == 1;
 }
 
 std::string CellText(const BenchSuite& suite, const BenchCell& cell) {

@@ -1,10 +1,12 @@
 #include "experiments/bench_records.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "experiments/atomic_file.h"
@@ -15,10 +17,10 @@ namespace batten {
 namespace {
 
 /// Empty, or the file and why it cannot be written; then nothing is left of it.
-std::string WriteFile(const std::string& path, const std::string& text) {
+std::string WriteFile(const std::string& path, const std::function<void(std::ostream*)>& write) {
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << text;
+  write(&file);
   file.close();
   if (!file.fail()) return "";
   const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
@@ -41,12 +43,19 @@ bool IsThere(const std::string& path) {
 
 }  // namespace
 
-bool FitsIterates(const Problem& problem, int most) {
+std::size_t MostIterates(const Problem& problem, int asked) {
   constexpr int kMostNumbers = 20'000;
-  constexpr double kMostBytes = 32.0 * 1024 * 1024;
+  constexpr std::size_t kMostBytes = 32u * 1024 * 1024;
+  // Each iterate beyond what is held looks through all of them.
+  constexpr std::size_t kMost = 20'000;
   const CurveFit* const fit = problem.curve_fit();
-  return fit != nullptr && fit->basis().num_control_points() * fit->dimension() <= kMostNumbers &&
-         1.0 * most * problem.num_variables() * sizeof(double) <= kMostBytes;
+  if (fit == nullptr || fit->basis().num_control_points() * fit->dimension() > kMostNumbers) {
+    return 0;
+  }
+  const std::size_t bytes_each = static_cast<std::size_t>(problem.num_variables()) * sizeof(double);
+  std::size_t most = std::min(kMost, kMostBytes / std::max<std::size_t>(1, bytes_each));
+  if (asked != kAllIterates) most = std::min(most, static_cast<std::size_t>(asked));
+  return most < 2 ? 0 : most;  // the first and the last
 }
 
 std::string WriteRecords(const Problem& problem, const RunResult& run, const BenchRecords& records,
@@ -54,10 +63,13 @@ std::string WriteRecords(const Problem& problem, const RunResult& run, const Ben
   (*row)["trace_rows"] = run.trace.size();
   (*row)["iterate_rows"] = run.iterates.size();
   if (!run.skipped.empty()) return "";
-  std::string failure = WriteFile(records.trace, RunTraceCsv(problem, run));
+  std::string failure =
+      WriteFile(records.trace, [&](std::ostream* file) { *file << RunTraceCsv(problem, run); });
   if (!failure.empty() || run.iterates.empty()) return failure;
   const CurveFit& fit = *problem.curve_fit();
-  failure = WriteFile(records.iterates, ControlPointsJsonLines(fit, run.iterates));
+  failure = WriteFile(records.iterates, [&](std::ostream* file) {
+    for (const Iterate& iterate : run.iterates) *file << ControlPointsJsonLine(fit, iterate);
+  });
   if (!failure.empty()) return failure;
   // Other cells may read it, or write the same, at this moment.
   std::string error;

@@ -1,9 +1,11 @@
 #ifndef BATTEN_EXPERIMENTS_BENCH_RECORDS_H_
 #define BATTEN_EXPERIMENTS_BENCH_RECORDS_H_
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "experiments/bench_suite.h"
 #include "experiments/run.h"
 
 namespace batten {
@@ -11,7 +13,7 @@ namespace batten {
 /// Names of what a cell's process writes beside its row.
 struct BenchRecords {
   std::string trace;     // of all iterations
-  std::string iterates;  // of some; only where the cell keeps them
+  std::string iterates;  // only where the cell keeps them
   std::string curve;     // to draw them by; all cells of an instance share it
 };
 
@@ -26,10 +28,11 @@ struct BenchFolder {
   }
 };
 
-/// Whether a cell on this problem can keep `most` iterates: control points of at most 20,000
-/// numbers, so that lines stay short, and all together at most 32 MiB, so that the memory of the
-/// solver is still seen.
-bool FitsIterates(const Problem& problem, int most);
+/// How many iterates a cell on this problem keeps at most, of those `asked` for (kAllIterates, or
+/// >= 2): all together at most 32 MiB, so that the memory of the solver is still seen, and 20,000.
+/// A run with more iterations than that keeps them spread over it. 0, none, where control points
+/// have more than 20,000 numbers, so that lines stay short, or where no two iterates fit.
+std::size_t MostIterates(const Problem& problem, int asked);
 
 /// Writes the trace and, where some were kept, the iterates with what they are drawn by, and sets
 /// "trace_rows" and "iterate_rows" of the row, which says so that they are there. Not forced onto

@@ -171,8 +171,15 @@ bool ReadSeeds(const StrictObject& file, BenchSuite* suite) {
 /// The first and the last are always among them.
 bool ReadKeptIterates(const StrictObject& file, BenchSuite* suite) {
   constexpr int kMost = 1000;
-  return file.Integer("keep_iterates", Presence::kOptional, 0, kMost, &suite->keep_iterates) &&
-         (suite->keep_iterates != 1 || file.Refuse("keep_iterates", "0, or 2 to 1000"));
+  constexpr char kAllowed[] = "all, 0, or 2 to 1000";
+  if (!file.Has("keep_iterates")) return true;
+  if (!file.IsNumber("keep_iterates")) {
+    std::string word;
+    return file.Text("keep_iterates", Presence::kRequired, &word) &&
+           (word == "all" || file.Refuse("keep_iterates", kAllowed));
+  }
+  return file.Integer("keep_iterates", Presence::kRequired, 0, kMost, &suite->keep_iterates) &&
+         (suite->keep_iterates != 1 || file.Refuse("keep_iterates", kAllowed));
 }
 
 bool ReadOrder(const StrictObject& file, BenchSuite* suite) {

@@ -54,6 +54,9 @@ struct BenchSeeds {
   std::vector<int> solver = {1};  // of what is random in a solver
 };
 
+/// For BenchSuite::keep_iterates: as many as a cell can hold (MostIterates).
+constexpr int kAllIterates = -1;
+
 /// A scripted benchmark: problems x terms x solvers x seeds x repetitions (docs/formats.md).
 struct BenchSuite {
   std::string path;
@@ -70,8 +73,8 @@ struct BenchSuite {
   int repetitions = 3;
   bool shuffled = true;  // cells in random order
   int order_seed = 1;
-  int warm_up = 1;         // runs in a cell's process before the one that counts
-  int keep_iterates = 20;  // at most so many of each cell of repetition 1, or 0
+  int warm_up = 1;                   // runs in a cell's process before the one that counts
+  int keep_iterates = kAllIterates;  // at most so many of each cell of repetition 1, or 0
 };
 
 /// Reads and checks all of a suite, its problems and data included: each problem is made once with

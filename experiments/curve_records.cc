@@ -29,14 +29,10 @@ std::string CurveJson(const CurveFit& fit) {
   return json.dump() + "\n";
 }
 
-std::string ControlPointsJsonLines(const CurveFit& fit, const std::vector<Iterate>& iterates) {
-  std::string lines;
-  for (const Iterate& iterate : iterates) {
-    const Json json = {{"iteration", iterate.iteration},
-                       {"control_points", Rows(fit.ControlPoints(iterate.x), 1)}};
-    lines += json.dump() + "\n";
-  }
-  return lines;
+std::string ControlPointsJsonLine(const CurveFit& fit, const Iterate& iterate) {
+  const Json json = {{"iteration", iterate.iteration},
+                     {"control_points", Rows(fit.ControlPoints(iterate.x), 1)}};
+  return json.dump() + "\n";
 }
 
 }  // namespace batten

@@ -2,7 +2,6 @@
 #define BATTEN_EXPERIMENTS_CURVE_RECORDS_H_
 
 #include <string>
-#include <vector>
 
 #include "experiments/run.h"
 #include "problems/fit_problem.h"
@@ -15,9 +14,9 @@ namespace batten {
 /// points in the user's units, every k-th where there are more than 1,000.
 std::string CurveJson(const CurveFit& fit);
 
-/// A line per iterate: {"iteration", "control_points"}, in the user's units; what is no finite
+/// The line of an iterate: {"iteration", "control_points"}, in the user's units; what is no finite
 /// number is null.
-std::string ControlPointsJsonLines(const CurveFit& fit, const std::vector<Iterate>& iterates);
+std::string ControlPointsJsonLine(const CurveFit& fit, const Iterate& iterate);
 
 }  // namespace batten
 

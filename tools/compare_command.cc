@@ -26,8 +26,8 @@ DEFINE_int32(
     "usual table.");
 DEFINE_int32(
     keep_iterates, 0,
-    "So many iterates of each run are kept, for the player of batten report; not where all "
-    "of a run's, at --max_iterations, would need more than 256 MiB.");
+    "So many iterates of each run are kept, or all where it has no more, for the player of batten "
+    "report; none where all of a run's, at --max_iterations, would need more than 256 MiB.");
 DEFINE_bool(strict, false, "Exit status 1 if some solver did not reach what was asked.");
 DEFINE_bool(figures, true,
             "Draw the results with gnuplot: convergence and fitted curves of compare, profiles and "
@@ -156,7 +156,7 @@ Command CompareCommand() {
                "names of batten list problems, problem files, all; separated by commas"),
       TextFlag("solvers", "LIST", "solvers of batten list solvers, all; separated by commas"),
       NumberFlag("repetitions", "N", 1.0, 1000.0), NumberFlag("starts", "N", 1.0, 100'000.0),
-      NumberFlag("keep_iterates", "N", 0.0, 10'000.0)};
+      NumberFlag("keep_iterates", "N", 0.0, 1e9)};
   for (FlagInfo& flag : RunFlags()) command.flags.push_back(std::move(flag));
   command.flags.push_back(
       TextFlag("out", "FOLDER", "a folder",

@@ -1,6 +1,9 @@
 #include "tools/run_records.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "experiments/curve_records.h"
@@ -21,6 +24,11 @@ std::string Path(const std::string& folder, const char* kind, const std::string&
 std::vector<std::string> Kinds(const ComparisonSpec& spec) {
   if (spec.kept_iterates == 0) return {"traces"};
   return {"traces", "iterates", "curves"};
+}
+
+long CountLines(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
 }
 
 }  // namespace
@@ -76,7 +84,12 @@ bool HasRunRecords(const CatalogueEntry& entry, const ComparisonResult& result,
     const std::string key = CellKey(entry, spec.solvers.at(k), spec);
     if (!fs::is_regular_file(Path(folder, "traces", key + ".csv"), ignored)) return false;
     if (spec.kept_iterates == 0) continue;
-    if (!fs::is_regular_file(Path(folder, "iterates", key + ".jsonl"), ignored)) return false;
+    const std::string iterates = Path(folder, "iterates", key + ".jsonl");
+    if (!fs::is_regular_file(iterates, ignored)) return false;
+    // An earlier run may have kept fewer; none is what does not fit.
+    const long lines = CountLines(iterates);
+    const long asked = std::min<long>(spec.kept_iterates, result.rows[k].run.iterations + 1);
+    if (lines > 0 && lines < asked) return false;
   }
   return true;
 }

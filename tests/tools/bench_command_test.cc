@@ -52,6 +52,30 @@ TEST_F(Bench, KilledAtRandomTimesEndsWithTheSameTable) {
   EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()).size(), 60u);
 }
 
+TEST_F(Bench, KeepsAllIteratesInTheFolderAndShowsSomeOfThem) {
+  json suite = GoodSuite();
+  suite["repetitions"] = 1;
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  ASSERT_EQ(RunBatten({"report", folder_ / "out"}).status, 0);
+  const std::string page = ReadFile(folder_ / "out/report.html");
+  const json runs = json::parse(ScriptText(page, "curves-data"))["runs"];
+  int longest = 0;
+  for (const auto& [key, text] : Iterates("out")) {
+    const std::vector<std::string> lines = Lines(text);
+    EXPECT_EQ(Lines(ReadFile(folder_ / ("out/traces/" + key + ".csv"))).size(), lines.size() + 1);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      ASSERT_EQ(json::parse(lines[k])["iteration"], k);
+    }
+    const int last = static_cast<int>(lines.size()) - 1;
+    const json shown = runs[key]["iterations"];
+    EXPECT_EQ(shown.size(), std::min<std::size_t>(40, lines.size()));
+    EXPECT_EQ(shown.front(), 0);
+    EXPECT_EQ(shown.back(), last);
+    longest = std::max(longest, last);
+  }
+  EXPECT_GT(longest, 40);  // or nothing was thinned
+}
+
 TEST_F(Bench, KeepsSomeIteratesOfTheFirstRepetition) {
   json suite = GoodSuite();
   suite["repetitions"] = 2;
@@ -112,7 +136,7 @@ TEST_F(Bench, ThePageHasAPlayerOfEachInstance) {
   EXPECT_EQ(curves["runs"].size(), 30u);  // 3 problems x 2 terms x 5 solvers, once
   for (const json& run : curves["runs"]) {
     ASSERT_TRUE(curves["problems"].contains(run["curve"].get<std::string>()));
-    EXPECT_LE(run["points"].size(), 20u);
+    EXPECT_LE(run["points"].size(), 40u);
   }
   // Terms do not change what curves are drawn by.
   EXPECT_EQ(curves["problems"].size(), 3u);

@@ -118,7 +118,13 @@ INSTANTIATE_TEST_SUITE_P(
                  {"/rule/mode", "did you mean race?"}},
         BadSuite{"OneIterate",
                  [](json* s) { (*s)["keep_iterates"] = 1; },
-                 {"/keep_iterates: found 1; allowed: 0, or 2 to 1000"}},
+                 {"/keep_iterates: found 1; allowed: all, 0, or 2 to 1000"}},
+        BadSuite{"IteratesWord",
+                 [](json* s) { (*s)["keep_iterates"] = "most"; },
+                 {"/keep_iterates: found \"most\"; allowed: all, 0, or 2 to 1000"}},
+        BadSuite{"IteratesFlag",
+                 [](json* s) { (*s)["keep_iterates"] = true; },
+                 {"/keep_iterates: found true"}},
         BadSuite{"Target",
                  [](json* s) {
                    (*s)["targets"] = {{"gaps", {0.1, 2}}};

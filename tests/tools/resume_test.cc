@@ -148,5 +148,22 @@ TEST_F(ResumedRows, OfAFileWithoutAnEndAreNotWaitedFor) {
   EXPECT_EQ(Compare("--resume").status, 0);
 }
 
+TEST_F(ResumedRows, WithFewerIteratesThanAskedForAreComputedAgain) {
+  const auto compare = [this](const char* most) {
+    const Ended ended =
+        RunBatten({"compare", "--problems=rhino", "--solvers=cg", "--repetitions=1", "--nofigures",
+                   "--out=" + out_, "--resume", std::string("--keep_iterates=") + most});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return Lines(ReadFile(out_ + "/iterates/" + Row()["key"].get<std::string>() + ".jsonl")).size();
+  };
+  EXPECT_EQ(compare("5"), 5u);
+  const std::size_t all = Row()["iterations"].get<std::size_t>() + 1;
+  ASSERT_GT(all, 5u);
+  EXPECT_EQ(compare("100000"), all);
+  WriteMarked(Row());
+  EXPECT_EQ(compare("6"), all);
+  EXPECT_EQ(Row()["cpu_seconds"], kMark);
+}
+
 }  // namespace
 }  // namespace batten
