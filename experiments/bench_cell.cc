@@ -89,13 +89,14 @@ void AddEnd(const Problem& problem, const RunResult& run, const RunSpec& spec, J
   (*json)["polished_control_points"] = std::move(points);
 }
 
-void AddPlace(const BenchSuite& suite, const BenchCell& cell, Json* json) {
+/// `identity`: the solver with its options.
+void AddPlace(const BenchSuite& suite, const BenchCell& cell, const std::string& identity,
+              Json* json) {
   (*json)["terms"] = suite.terms[cell.terms].label;
   (*json)["parameter_kind"] = ToString(suite.problems[cell.problem].entry.spec.parameter_kind);
   (*json)["data_seed"] = cell.seeds.data;
   (*json)["start_seed"] = cell.seeds.start;
   (*json)["repetition"] = cell.repetition;
-  const std::string identity = SolverIdentity(suite.solvers[cell.solver]);
   (*json)["identity"] = identity;
   ContentHash hash;
   hash.Add(InstanceKey(suite, cell));  // program, plugins, problem, data, terms
@@ -212,7 +213,7 @@ std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
   MeasureEnd(*problem, direct, spec, &row);
   const bool ran = row.run.skipped.empty();
   Json json = CellJson(row, direct.minimum_energy(), spec);
-  AddPlace(suite, cell, &json);
+  AddPlace(suite, cell, EffectiveIdentity(row.run), &json);
   AddTruthChecks(row, spec, &json);
   const std::string not_written = WriteRecords(*problem, row.run, records, &json);
   if (!not_written.empty()) return kCannotWrite + not_written;
@@ -264,7 +265,7 @@ Json FailedRow(const BenchSuite& suite, const BenchCell& cell, const ChildEnd& e
   row.run.skipped = end.message;  // so that all numbers are null
   Json json = CellJson(row, std::nan(""), RuleOf(suite, cell));
   json["stop"] = ToString(end.how);
-  AddPlace(suite, cell, &json);
+  AddPlace(suite, cell, SolverIdentity(suite.solvers[cell.solver]), &json);
   json["stream"] = HexDigits(0);
   json["stream_points"] = 0;
   json["calls_past_stop"] = 0;

@@ -45,4 +45,30 @@ std::string OptionsThatDiffer(const RunResult& run) {
   return "";
 }
 
+std::string EffectiveIdentity(const RunResult& run) {
+  std::map<std::string, std::map<std::string, std::string>> ran;  // options by solver
+  std::string others;
+  std::string ignored;
+  for (const auto& [name, value] : run.notes) {
+    NameSpec note;
+    if (name != kOptionsThatRan) continue;
+    if (!ParseNameSpec(value, &note, &ignored) || FindInChain(run.solver, note.name) == nullptr) {
+      others += " ran " + value;
+      continue;
+    }
+    for (const auto& [option, text] : note.options) ran[note.name][option] = text;
+  }
+  std::string identity;
+  for (const NameSpec* spec = &run.solver; spec != nullptr; spec = spec->wrapped.get()) {
+    OptionValues values;
+    if (SolverRegistry::Global().Make(*spec, &values, &ignored) == nullptr) return "";
+    std::map<std::string, std::string> options = values.ToText();
+    for (const auto& [option, text] : ran[spec->name]) options[option] = text;
+    ran.erase(spec->name);  // of two with one name the outer one, as in FindInChain
+    identity += (identity.empty() ? "" : ":") + spec->name;
+    for (const auto& [option, text] : options) identity += "/" + option + "=" + text;
+  }
+  return identity + others;
+}
+
 }  // namespace batten

@@ -1,5 +1,6 @@
 #include "experiments/run_control.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -108,7 +109,10 @@ void RunControl::OffTheClock(const std::function<void()>& work) {
 }
 
 void RunControl::Note(const std::string& name, const std::string& value) {
-  result_->notes.emplace_back(name, value);
+  // A wrapped solver is run many times, and says the same each time.
+  auto& notes = result_->notes;
+  const std::pair<std::string, std::string> note(name, value);
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
 Status RunControl::Iterate(const Eigen::VectorXd& x) {

@@ -9,6 +9,7 @@
 
 #include "problems/fit_problem.h"
 #include "solvers/foot_projection.h"
+#include "solvers/options_note.h"
 
 namespace batten {
 namespace {
@@ -37,7 +38,10 @@ class StartContext final : public RunContext {
   StopReason stop_reason() const override {
     return reason_ == StopReason::kNotRun ? outer_->stop_reason() : reason_;
   }
-  void Note(const std::string& /*name*/, const std::string& /*value*/) override {}
+  /// With what options it ran is of the whole run, other notes are of this part alone.
+  void Note(const std::string& name, const std::string& value) override {
+    if (name == kOptionsThatRan) outer_->Note(name, value);
+  }
   void OffTheClock(const std::function<void()>& work) override { outer_->OffTheClock(work); }
   std::uint64_t seed() const override { return outer_->seed(); }
   int threads() const override { return outer_->threads(); }

@@ -84,12 +84,17 @@ INSTANTIATE_TEST_SUITE_P(All, LibraryPlugin, ::testing::Values("nlopt", "liblbfg
 TEST(LibraryPlugins, LibLbfgsHeedsItsOptions) {
   if (!std::filesystem::exists(Plugin("liblbfgs"))) GTEST_SKIP() << "libLBFGS is not there";
   std::set<double> energies;
-  const std::vector<std::string> options = {"/memory=1", "/memory=20", "/line_search=armijo"};
-  for (const std::string& option : options) {
+  // Asked, and with what stays as it is by default.
+  const std::map<std::string, std::string> options = {
+      {"/memory=1", "/memory=1/line_search=more_thuente"},
+      {"/memory=20", "/memory=20/line_search=more_thuente"},
+      {"/line_search=armijo", "/memory=6/line_search=armijo"}};
+  for (const auto& [option, ran] : options) {
     SCOPED_TRACE(option);
     const auto fit = FitBy("liblbfgs", "liblbfgs" + option);
     EXPECT_THAT(NoteOf(fit), HasSubstr("libLBFGS L-BFGS m="));
     EXPECT_GT(fit["counts"]["gradient_calls"].get<int>(), 0);
+    EXPECT_EQ(NoteOf(fit, "options that ran"), "liblbfgs" + ran);
     energies.insert(fit["energy"].get<double>());
   }
   EXPECT_EQ(energies.size(), options.size());
