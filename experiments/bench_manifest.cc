@@ -61,6 +61,23 @@ Json Versions() {
   return json;
 }
 
+std::string FileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+Json PluginJson(const LoadedPlugin& plugin) {
+  Json names = Json::array();
+  for (const PluginName& name : plugin.names) names.push_back(name.kind + " " + name.name);
+  Json libraries = Json::array();
+  for (const std::string& path : plugin.libraries) {
+    libraries.push_back({{"file", FileName(path)}, {"sha256", Sha256OfFile(path)}});
+  }
+  return {{"file", FileName(plugin.path)},
+          {"sha256", plugin.sha256},
+          {"names", names},
+          {"libraries", libraries}};
+}
+
 Json SessionJson(const BenchSession& session) {
   utsname system{};
   uname(&system);
@@ -119,12 +136,7 @@ bool WriteManifest(const BenchSuite& suite, const BenchSession& session, const s
   json["flags"] = kFlags;
   json["libraries"] = Versions();
   json["plugins"] = Json::array();
-  for (const LoadedPlugin& plugin : LoadedPlugins()) {
-    Json names = Json::array();
-    for (const PluginName& name : plugin.names) names.push_back(name.kind + " " + name.name);
-    const std::string file = std::filesystem::path(plugin.path).filename().string();
-    json["plugins"].push_back({{"file", file}, {"sha256", plugin.sha256}, {"names", names}});
-  }
+  for (const LoadedPlugin& plugin : LoadedPlugins()) json["plugins"].push_back(PluginJson(plugin));
   json["sessions"] = std::move(sessions);
   return WriteFileAtomically(path, DumpJson(json, 1) + "\n", error);
 }

@@ -20,6 +20,7 @@
 
 #include "problems/input_file.h"
 #include "solvers/c_solver.h"
+#include "solvers/needed_libraries.h"
 
 namespace batten {
 namespace {
@@ -27,12 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kAllowed[] = "a plugin built with batten_add_plugin (docs/plugins.md)";
-
-/// Empty where the file cannot be read.
-std::string Sha256OfFile(const std::string& path) {
-  char digits[SHA256_DIGEST_STRING_LENGTH];
-  return SHA256File(path.c_str(), digits) == nullptr ? "" : digits;
-}
 
 /// Empty: `path` begins as a shared object of this machine does, and holds all that its program
 /// headers say. The loader does not look: it maps what is missing, and the first touch is fatal.
@@ -132,11 +127,17 @@ std::string LoadOne(LoadedPlugin* plugin) {
   std::string why = WhyRefused(*card);
   if (!why.empty()) return why;
   plugin->card = FieldsOf(*card);
+  plugin->libraries = NeededLibraries(library);
   const bool is_c = std::strcmp(card->interface, "C") == 0;
   return Register(library, path, is_c, &plugin->names);
 }
 
 }  // namespace
+
+std::string Sha256OfFile(const std::string& path) {
+  char digits[SHA256_DIGEST_STRING_LENGTH];
+  return SHA256File(path.c_str(), digits) == nullptr ? "" : digits;
+}
 
 std::string LoadPlugins(const std::vector<std::string>& paths, std::vector<LoadedPlugin>* loaded) {
   for (const std::string& path : paths) {

@@ -14,7 +14,11 @@ struct LoadedPlugin {
   std::string sha256;  ///< Of the file: 64 hexadecimal digits.
   CardFields card;
   std::vector<PluginName> names;
+  std::vector<std::string> libraries;  ///< Those it was linked with (NeededLibraries).
 };
+
+/// 64 hexadecimal digits; empty where the file cannot be read.
+std::string Sha256OfFile(const std::string& path);
 
 /// Loads the shared objects `paths` in their order and appends them to *loaded; one that is loaded
 /// already, be it under another name, is passed over. Empty, or one sentence: `PATH: what is wrong;

@@ -2,6 +2,7 @@
 // does.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -53,6 +54,7 @@ TEST(LibraryPlugins, NloptRunsTheAlgorithmThatIsNamed) {
     SCOPED_TRACE(word);
     const auto fit = FitBy("nlopt", "nlopt/algorithm=" + word);
     EXPECT_THAT(NoteOf(fit), HasSubstr(name));
+    EXPECT_THAT(NoteOf(fit), ::testing::MatchesRegex("NLopt 2\\.[0-9]+\\.[0-9]+: .*"));
     EXPECT_EQ(NoteOf(fit, "options that ran"), "nlopt/algorithm=" + word + "/memory=10");
     EXPECT_LT(fit["energy"].get<double>(), fit["start"]["energy"].get<double>());
     // Derivative-free ones ask for no gradient.
@@ -92,12 +94,47 @@ TEST(LibraryPlugins, LibLbfgsHeedsItsOptions) {
   for (const auto& [option, ran] : options) {
     SCOPED_TRACE(option);
     const auto fit = FitBy("liblbfgs", "liblbfgs" + option);
+    EXPECT_EQ(NoteOf(fit, "options that ran"), "liblbfgs" + ran);
     EXPECT_THAT(NoteOf(fit), HasSubstr("libLBFGS L-BFGS m="));
     EXPECT_GT(fit["counts"]["gradient_calls"].get<int>(), 0);
-    EXPECT_EQ(NoteOf(fit, "options that ran"), "liblbfgs" + ran);
     energies.insert(fit["energy"].get<double>());
   }
   EXPECT_EQ(energies.size(), options.size());
+}
+
+/// What a command prints, without the last line's end.
+std::string OutputOf(const std::string& command) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(std::system((command + " > " + (folder / "out")).c_str()), 0) << command;
+  std::string text = ReadFile(folder / "out");
+  if (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+TEST(LibraryPlugins, TheManifestHasTheLibrariesThatWereLoaded) {
+  for (const std::string name : {"nlopt", "liblbfgs"}) {
+    if (!std::filesystem::exists(Plugin(name))) GTEST_SKIP() << name << " is not there";
+    const TemporaryFolder folder;
+    const nlohmann::json suite = {{"format", "batten.suite/1"}, {"name", "libraries"},
+                                  {"plugins", {Plugin(name)}},  {"problems", {"rhino"}},
+                                  {"solvers", {"cg"}},          {"repetitions", 1}};
+    ASSERT_EQ(RunBatten({"bench", folder.Write("suite.json", suite.dump()),
+                         "--out=" + (folder / "out"), "--nofigures", "--quiet"})
+                  .status,
+              0);
+    const auto manifest = nlohmann::json::parse(ReadFile(folder / "out/manifest.json"));
+    // As the loader says, without symbolic links.
+    const std::string library = name == "nlopt" ? "libnlopt" : "liblbfgs";
+    const std::string path = OutputOf("readlink -f $(ldd " + Plugin(name) + " | awk '/" + library +
+                                      "[-.0-9]*so/ {print $3}')");
+    bool is_there = false;
+    for (const auto& needed : manifest["plugins"][0]["libraries"]) {
+      if (needed["file"] != std::filesystem::path(path).filename().string()) continue;
+      is_there = true;
+      EXPECT_EQ(needed["sha256"], OutputOf("sha256sum " + path + " | cut -d' ' -f1"));
+    }
+    EXPECT_TRUE(is_there) << path << " in " << manifest["plugins"].dump();
+  }
 }
 
 }  // namespace

@@ -99,6 +99,13 @@ double Evaluate(unsigned n, const double* x, double* gradient, void* data) {
   return HUGE_VAL;
 }
 
+/// Of the library that is loaded.
+std::string Version() {
+  int major = 0, minor = 0, bugfix = 0;
+  nlopt_version(&major, &minor, &bugfix);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(bugfix);
+}
+
 batten::Outcome OutcomeOf(nlopt_result result) {
   const std::string message = std::string("NLopt says ") + nlopt_result_to_string(result);
   const bool is_failure = result == NLOPT_OUT_OF_MEMORY || result == NLOPT_INVALID_ARGS;
@@ -146,7 +153,7 @@ class NloptSolver final : public batten::Solver {
     if (optimizer == nullptr) return {batten::StopReason::kNumericalFailure, "out of memory"};
     // By what the library answers, not by what it was asked for.
     const nlopt_algorithm made = nlopt_get_algorithm(optimizer.get());
-    context->Note("algorithm that ran", nlopt_algorithm_name(made));
+    context->Note("algorithm that ran", "NLopt " + Version() + ": " + nlopt_algorithm_name(made));
     if (made != algorithm_.code) {
       return {batten::StopReason::kNumericalFailure, "NLopt made another algorithm"};
     }
