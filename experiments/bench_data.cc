@@ -49,6 +49,10 @@ bool ReadBenchData(const std::string& folder, BenchData* data, std::string* erro
   return true;
 }
 
+bool IsMeasured(const nlohmann::json& instance) {
+  return Find(instance, "failure") == nullptr && !FlagAt(instance, "overlapped");
+}
+
 double NumberAt(const nlohmann::json& row, const char* key) {
   const nlohmann::json* const value = Find(row, key);
   return value != nullptr && value->is_number() ? value->get<double>() : std::nan("");

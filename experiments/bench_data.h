@@ -17,6 +17,10 @@ struct BenchData {
   std::size_t num_cells = 0;                        // that there are to be
 };
 
+/// Whether a line of instances.jsonl stands: not where its process failed, or another program
+/// measured at the same time.
+bool IsMeasured(const nlohmann::json& instance);
+
 /// False with one sentence in `error` for a folder without results of this format.
 bool ReadBenchData(const std::string& folder, BenchData* data, std::string* error);
 

@@ -211,6 +211,14 @@ std::vector<PlotPanel> PairPanels(const BenchResults& results) {
   return has_pairs ? PairPanelsOf(results, target) : std::vector<PlotPanel>();
 }
 
+/// Without those of time where all runs overlapped. At least 1.
+int NumCosts(const BenchResults& results) {
+  const auto count = std::count_if(kBenchCosts.begin(), kBenchCosts.end(), [&](BenchCost cost) {
+    return AnyFinite(AllCosts(results, cost, GoalsOf(results).back()));
+  });
+  return std::max(1, static_cast<int>(count));
+}
+
 struct BenchFigure {
   const char* name;
   std::vector<PlotPanel> (*panels)(const BenchResults& results);
@@ -228,14 +236,14 @@ FigureResult DrawOrRemove(const std::string& stem, const std::vector<PlotPanel>&
 
 std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const std::string& folder,
                                            FileBatch* batch) {
-  const int costs = results.overlapped ? 1 : static_cast<int>(kBenchCosts.size());
-  const BenchFigure all[] = {{"performance_profiles", &PerformancePanels, costs},
-                             {"data_profiles", &DataPanels, costs},
-                             {"runtime_distributions", &DistributionPanels, 1},
-                             {"pair_profiles", &PairPanels, 2}};
   std::vector<FigureResult> figures;
   for (const char* kind : {"fixed", "free", "projected"}) {
     const BenchResults part = OfKind(results, kind);
+    const int costs = NumCosts(part);
+    const BenchFigure all[] = {{"performance_profiles", &PerformancePanels, costs},
+                               {"data_profiles", &DataPanels, costs},
+                               {"runtime_distributions", &DistributionPanels, 1},
+                               {"pair_profiles", &PairPanels, 2}};
     for (const BenchFigure& figure : all) {
       figures.push_back(DrawOrRemove(folder + "/" + figure.name + "_" + kind, figure.panels(part),
                                      HasBasins(part) ? 2 : figure.columns, batch));

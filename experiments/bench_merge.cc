@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "experiments/atomic_file.h"
 #include "experiments/bench_data.h"
@@ -73,24 +75,29 @@ class Merger {
     for (const char* folder : {"", "/traces", "/iterates", "/curves", "/logs"}) {
       if (!CreateDirectories(out_ + folder, error)) return false;
     }
-    const auto Note = [](std::map<std::string, bool>* keys) {
-      return [keys](const std::string& line) {
-        const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
-        if (!TextAt(json, "key").empty()) (*keys)[TextAt(json, "key")] = true;
-      };
+    const auto NoteCell = [this](const std::string& line) {
+      const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+      if (!TextAt(json, "key").empty()) cell_keys_.insert(TextAt(json, "key"));
     };
-    return cells_.Open(out_ + "/cells.jsonl", Note(&cell_keys_), error) &&
-           instances_.Open(out_ + "/instances.jsonl", Note(&instance_keys_), error);
+    const auto NoteInstance = [this](const std::string& line) {
+      const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+      if (!TextAt(json, "key").empty()) instance_keys_[TextAt(json, "key")] = IsMeasured(json);
+    };
+    return cells_.Open(out_ + "/cells.jsonl", NoteCell, error) &&
+           instances_.Open(out_ + "/instances.jsonl", NoteInstance, error);
   }
 
   bool Add(const BenchData& data, MergeReport* report, std::string* error) {
     for (const auto& [key, instance] : data.instances) {
-      if (!instance_keys_.emplace(key, true).second) continue;
+      // One that is measured takes the place of one that is not: the last line counts.
+      const auto [place, is_new] = instance_keys_.emplace(key, IsMeasured(instance));
+      if (!is_new && (place->second || !IsMeasured(instance))) continue;
+      place->second = IsMeasured(instance);
       if (!instances_.Append(instance.dump(), error)) return false;
     }
     for (const nlohmann::json& row : data.rows) {
       const std::string key = TextAt(row, "key");
-      if (!cell_keys_.emplace(key, true).second) {
+      if (!cell_keys_.insert(key).second) {
         ++report->duplicates;
         continue;
       }
@@ -105,8 +112,8 @@ class Merger {
   std::string out_;
   AppendOnlyFile cells_;
   AppendOnlyFile instances_;
-  std::map<std::string, bool> cell_keys_;
-  std::map<std::string, bool> instance_keys_;
+  std::set<std::string> cell_keys_;
+  std::map<std::string, bool> instance_keys_;  // and whether it is measured
 };
 
 }  // namespace

@@ -182,7 +182,8 @@ void AddNotes(BenchResults* results) {
   }
   if (results->overlapped) {
     results->notes.emplace_back(
-        "cells that ran beside others are left out of everything that is time");
+        "cells that ran beside others (--jobs, or another bench on the machine) are left out of "
+        "everything that is time");
   }
   NoteRuns(results);
   NoteTwins(results);

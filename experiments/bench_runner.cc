@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "experiments/atomic_file.h"
+#include "experiments/bench_data.h"
 #include "experiments/comparison_records.h"
 
 namespace batten {
@@ -82,9 +83,9 @@ bool BenchRunner::Run(const Progress& progress, std::string* error) {
 bool BenchRunner::MeasureInstances(const Progress& progress, std::string* error) {
   std::map<std::string, const BenchCell*> missing;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (rows_.count(keys_[i]) > 0) continue;  // measured with its row
     const std::string key = InstanceKey(suite_, cells_[i]);
-    if (instances_.count(key) == 0) missing[key] = &cells_[i];
+    const auto measured = instances_.find(key);
+    if (measured == instances_.end() || !IsMeasured(measured->second)) missing[key] = &cells_[i];
   }
   int done = 0;
   for (const auto& [key, cell] : missing) {
@@ -103,8 +104,10 @@ bool BenchRunner::MeasureOne(const BenchCell& cell, const std::string& key, std:
       LimitsOf(suite_), "/dev/null", [&] { return MeasureInstance(suite_, cell); }, error);
   if (process == nullptr) return false;
   constexpr int kInterval = 100;  // milliseconds
+  bool overlapped = false;
   for (bool ended = false; !ended;) {
     if (InterruptRequested()) return true;
+    overlapped = overlapped || machine_.OthersMeasure();
     pollfd file = {process->file(), POLLIN, 0};
     poll(&file, 1, kInterval);
     ended = process->Attend();
@@ -116,6 +119,7 @@ bool BenchRunner::MeasureOne(const BenchCell& cell, const std::string& key, std:
                 {"problem", suite_.problems[cell.problem].label},
                 {"failure", end.message}};
   }
+  instance["overlapped"] = overlapped || machine_.OthersMeasure();
   instance["key"] = key;
   const std::string line = DumpJson(instance, -1);
   if (!instance_file_.Append(line, error)) return false;
@@ -129,6 +133,7 @@ bool BenchRunner::StartNext(std::vector<Running>* running, std::string* error) {
   if (rows_.count(key) > 0) return true;
   Running started;
   started.cell = cell;
+  started.overlapped = jobs_ > 1;
   started.process = ChildProcess::Start(
       LimitsOf(suite_), folder_.log(key),
       [&] { return RunBenchCell(suite_, cells_[cell], RecordsOf(cell)); }, error);
@@ -137,9 +142,16 @@ bool BenchRunner::StartNext(std::vector<Running>* running, std::string* error) {
   return true;
 }
 
+/// Before each wait and behind it: who measured in between for longer than a wait is seen.
+void BenchRunner::LookForOthers(std::vector<Running>* running) const {
+  if (!machine_.OthersMeasure()) return;
+  for (Running& one : *running) one.overlapped = true;
+}
+
 bool BenchRunner::Attend(std::vector<Running>* running, const Progress& progress,
                          std::string* error) {
   Tell(progress, *running);
+  LookForOthers(running);
   if (!cell_file_.SyncWhenDue(error)) return false;
   constexpr double kLongest = 0.1;  // seconds; interrupts and progress are looked at in between
   double wait = kLongest;
@@ -149,6 +161,7 @@ bool BenchRunner::Attend(std::vector<Running>* running, const Progress& progress
     wait = std::min(wait, std::max(0.0, one.process->seconds_left()));
   }
   poll(files.data(), files.size(), static_cast<int>(std::ceil(1e3 * wait)));
+  LookForOthers(running);
   for (std::size_t i = 0; i < running->size();) {
     if (!(*running)[i].process->Attend()) {
       ++i;
@@ -186,7 +199,7 @@ bool BenchRunner::FinishCell(const Running& ended, ChildEnd end, std::string* er
   std::error_code ignored;
   const bool has_log = std::filesystem::file_size(log, ignored) > 0 && !ignored;
   if (!has_log) std::filesystem::remove(log, ignored);
-  row["overlapped"] = jobs_ > 1;
+  row["overlapped"] = ended.overlapped;
   row["process_seconds"] = end.wall_seconds;
   row["process_cpu_seconds"] = end.cpu_seconds;
   row["peak_memory_mb"] = static_cast<double>(end.peak_memory_kb) / 1024.0;

@@ -10,6 +10,7 @@
 #include "experiments/bench_cell.h"
 #include "experiments/bench_records.h"
 #include "experiments/bench_store.h"
+#include "experiments/machine_use.h"
 
 namespace batten {
 
@@ -20,7 +21,8 @@ class BenchRunner {
   using Progress =
       std::function<void(int done, int total, double seconds_left, const std::string& running)>;
 
-  /// `suite` must outlive this. `jobs` cells at once; with more than 1 all are marked overlapped.
+  /// `suite` must outlive this. `jobs` cells at once; with more than 1 all are marked overlapped,
+  /// as are those beside which another program measured on this machine (MachineUse).
   BenchRunner(const BenchSuite& suite, std::vector<BenchCell> cells, BenchFolder folder, int jobs);
 
   /// Makes the folders, takes over what is finished. False with one sentence in `error`.
@@ -42,18 +44,21 @@ class BenchRunner {
   struct Running {
     std::size_t cell = 0;
     std::unique_ptr<ChildProcess> process;
+    bool overlapped = false;
   };
   void TakeOver(const std::string& line);
   BenchRecords RecordsOf(std::size_t cell) const;
   bool MeasureInstances(const Progress& progress, std::string* error);
   bool MeasureOne(const BenchCell& cell, const std::string& key, std::string* error);
   bool StartNext(std::vector<Running>* running, std::string* error);
+  void LookForOthers(std::vector<Running>* running) const;
   bool Attend(std::vector<Running>* running, const Progress& progress, std::string* error);
   bool FinishCell(const Running& ended, ChildEnd end, std::string* error);
   void Tell(const Progress& progress, const std::vector<Running>& running) const;
   std::string MessageOf(const ChildEnd& end, const std::string& log) const;
 
   const BenchSuite& suite_;
+  MachineUse machine_;
   std::vector<BenchCell> cells_;
   std::vector<std::string> keys_;  // of the cells
   BenchFolder folder_;

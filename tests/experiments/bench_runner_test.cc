@@ -3,7 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <set>
 
 #include "experiments/bench_manifest.h"
@@ -21,6 +25,20 @@ using ::testing::IsEmpty;
 
 class BenchRunnerTest : public ::testing::Test {
  protected:
+  // Tests that run beside this one are not to be seen: MachineUse goes by the temporary folder.
+  void SetUp() override {
+    const char* const before = getenv("TMPDIR");
+    if (before != nullptr) temporary_ = before;
+    setenv("TMPDIR", folder_.path().c_str(), 1);
+  }
+  void TearDown() override {
+    if (temporary_.has_value()) {
+      setenv("TMPDIR", temporary_->c_str(), 1);
+    } else {
+      unsetenv("TMPDIR");
+    }
+  }
+
   /// Runs a suite of these solvers on one small problem; rows in the order of the solvers.
   std::vector<nlohmann::json> Run(const std::string& solvers, const std::string& more = "") {
     const std::string path = folder_.Write(
@@ -54,7 +72,50 @@ class BenchRunnerTest : public ::testing::Test {
   BenchSuite suite_;
   BenchData data_;
   std::size_t taken_over_ = 0;
+
+ private:
+  std::optional<std::string> temporary_;
 };
+
+TEST_F(BenchRunnerTest, MarksWhatRanBesideAnotherMeasurement) {
+  {
+    const MachineUse other;
+    const auto rows = Run(R"("cg")", R"(, "repetitions": 2, "warm_up": 0)");
+    for (const nlohmann::json& row : rows) EXPECT_EQ(row["overlapped"], true);
+    const BenchResults results = Results();
+    EXPECT_TRUE(results.overlapped);
+    EXPECT_THAT(results.runs.at(0).seconds, IsEmpty());
+    EXPECT_TRUE(std::isnan(results.instances.at(0).unit_seconds));
+  }
+  // Alone: the work unit is measured again, cells that are finished stay.
+  const auto rows = Run(R"("cg")", R"(, "repetitions": 3, "warm_up": 0)");
+  EXPECT_EQ(taken_over_, 2u);
+  EXPECT_EQ(rows.at(1)["overlapped"], true);
+  EXPECT_EQ(rows.at(2)["overlapped"], false);
+  EXPECT_GT(Results().instances.at(0).unit_seconds, 0.0);
+}
+
+TEST_F(BenchRunnerTest, MeasuresAWorkUnitAgainThatFailed) {
+  Run(R"("cg")");
+  const std::string path = out_ + "/instances.jsonl";
+  std::string line;
+  std::getline(std::ifstream(path), line);
+  const nlohmann::json good = nlohmann::json::parse(line);
+  ASSERT_GT(good["evaluation_seconds"], 0.0);
+  std::ofstream(path) << nlohmann::json{{"format", "batten.instance/1"},
+                                        {"problem", "star"},
+                                        {"failure", "killed"},
+                                        {"key", good["key"]}}
+                      << "\n";
+  Run(R"("cg")");
+  EXPECT_EQ(taken_over_, 1u);
+  EXPECT_GT(Results().instances.at(0).unit_seconds, 0.0);
+  EXPECT_EQ(Results().instances.at(0).minimum_energy, good["minimum_energy"]);
+  // Once it is measured it stays.
+  const auto size = std::filesystem::file_size(path);
+  Run(R"("cg")");
+  EXPECT_EQ(std::filesystem::file_size(path), size);
+}
 
 TEST_F(BenchRunnerTest, MakesARowOfACrash) {
   const RegisteredSolver crasher("crasher", &faults::Crash);

@@ -280,6 +280,34 @@ TEST_F(Bench, AChangedProgramRunsAllCellsAgain) {
   EXPECT_EQ(Keys("out").size(), 6u);
 }
 
+TEST_F(Bench, MergeTakesAWorkUnitThatWasMeasuredLater) {
+  json suite = GoodSuite();
+  suite["solvers"] = {"cg"};
+  suite["repetitions"] = 1;
+  ASSERT_EQ(RunIn(Suite(suite), "part").status, 0);
+  std::string failed;
+  for (const std::string& line : Lines(ReadFile(folder_ / "part/instances.jsonl"))) {
+    failed += json({{"failure", "killed"}, {"key", json::parse(line)["key"]}}).dump() + "\n";
+  }
+  folder_.Write("part/instances.jsonl", failed);
+  const auto merge = [this] {
+    EXPECT_EQ(RunBatten({"merge", folder_ / "out", folder_ / "part", "--nofigures"}).status, 0);
+    std::map<std::string, json> units;
+    for (const std::string& line : Lines(ReadFile(folder_ / "out/instances.jsonl"))) {
+      const json instance = json::parse(line);
+      units[instance["key"]] = instance.value("evaluation_seconds", json());
+    }
+    EXPECT_EQ(units.size(), 3u);
+    return units;
+  };
+  for (const auto& [key, seconds] : merge()) EXPECT_TRUE(seconds.is_null());
+  ASSERT_EQ(RunIn(Suite(suite), "part").status, 0);
+  for (const auto& [key, seconds] : merge()) EXPECT_GT(seconds.get<double>(), 0.0);
+  const std::string merged = ReadFile(folder_ / "out/instances.jsonl");
+  merge();
+  EXPECT_EQ(ReadFile(folder_ / "out/instances.jsonl"), merged);
+}
+
 TEST_F(Bench, MergeRefusesAnotherSuite) {
   json other = GoodSuite();
   other["problems"].erase(0);
