@@ -181,12 +181,19 @@ TEST_F(BenchRunnerTest, FlagsALiarWhereTheAuditDoesNotApply) {
 }
 
 TEST_F(BenchRunnerTest, FlagsWhoIgnoresStop) {
-  const RegisteredSolver solver("deaf", &faults::GoOn);
-  const auto rows = Run(R"("deaf")", R"(, "budgets": {"iterations": 5})");
+  const RegisteredSolver solver("deaf", &faults::GoOn<1000>);
+  const RegisteredSolver slow("slow_to_hear", &faults::GoOn<3>);
+  const RegisteredSolver last("books_its_end", &faults::GoOn<2>);
+  const auto rows =
+      Run(R"("deaf", "slow_to_hear", "books_its_end")", R"(, "budgets": {"iterations": 5})");
   EXPECT_EQ(rows.at(0)["stop"], "iteration_limit");
   EXPECT_EQ(rows[0]["gradient_calls"], 5);
   EXPECT_EQ(rows[0]["calls_past_stop"], 1000);
   EXPECT_THAT(rows[0]["findings"], ElementsAre("ignores_stop"));
+  EXPECT_EQ(rows[1]["calls_past_stop"], 3);
+  EXPECT_THAT(rows[1]["findings"], ElementsAre("ignores_stop"));
+  EXPECT_EQ(rows[2]["calls_past_stop"], 2);
+  EXPECT_THAT(rows[2]["findings"], IsEmpty());
 }
 
 TEST_F(BenchRunnerTest, SaysThatTwoSolversAreOneMethod) {

@@ -98,9 +98,9 @@ inline Outcome Lie(Objective* objective, RunContext* context, Eigen::VectorXd* x
   return {StopReason::kGradientSmall, ""};
 }
 
-/// Goes on a thousand times after it was told to stop.
-inline Outcome GoOn(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
-  constexpr int kMore = 1000;
+/// Asks for so many evaluations after it was told to stop.
+template <int kMore>
+Outcome GoOn(Objective* objective, RunContext* context, Eigen::VectorXd* x) {
   while (context->Iterate(*x) == Status::kOk) DescendOnce(objective, x);
   for (int call = 0; call < kMore; ++call) DescendOnce(objective, x);
   return {context->stop_reason(), ""};
