@@ -191,6 +191,28 @@ TEST(BenchTables, PairTableCountsWhoNeedsLess) {
   EXPECT_EQ(table.Number(0, "second_at_10"), 0.75);
 }
 
+/// However many solvers there are, of which figures show no pairs.
+TEST(BenchTables, PairTableHasEveryPairByEveryCostToEveryTarget) {
+  HandMadeBench bench({0.5, 0.1});
+  bench.AddInstance("p", 0.0);
+  const std::vector<std::string> solvers = {"a", "b", "c", "d", "e", "f"};
+  for (const std::string& solver : solvers) {
+    bench.AddRun("p", solver, {{1, 0.0, 10.0}, {3, 0.3, 0.5}});
+  }
+  const CsvTable table = PairTable(bench.Results());
+  for (const char* target : {"gap 0.5", "gap 0.1"}) {
+    for (const char* cost : {"evaluations", "work_units", "seconds"}) {
+      const CsvTable part = table.Where("target", target).Where("cost", cost);
+      EXPECT_EQ(part.num_rows(), 15u) << target << ' ' << cost;  // 6 x 5 / 2
+      for (std::size_t a = 0; a < solvers.size(); ++a) {
+        for (std::size_t b = a + 1; b < solvers.size(); ++b) {
+          EXPECT_EQ(part.Where("first", solvers[a]).Where("second", solvers[b]).num_rows(), 1u);
+        }
+      }
+    }
+  }
+}
+
 /// Two lines: minima of E = 1 and E = 3, to be reached from E = 11.
 class BenchBasins : public ::testing::Test {
  protected:
