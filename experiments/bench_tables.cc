@@ -15,9 +15,6 @@ namespace {
 
 constexpr double kCharge = 10.0;
 
-/// Empty where there is no finite number.
-std::string Cell(double value) { return std::isfinite(value) ? NumberText(value) : ""; }
-
 std::string WithoutCommas(std::string text) {
   std::replace_if(
       text.begin(), text.end(),
@@ -141,27 +138,27 @@ CsvTable RunTable(const BenchResults& results) {
     const bool knows_basin = instance.has_basins && run.basin >= 0;
     table.AddRow({WithoutCommas(instance.problem),
                   WithoutCommas(instance.terms),
-                  Cell(NumberAt(row, "data_seed")),
-                  Cell(NumberAt(row, "start_seed")),
+                  NumberCell(NumberAt(row, "data_seed")),
+                  NumberCell(NumberAt(row, "start_seed")),
                   WithoutCommas(results.solvers[run.solver]),
                   std::to_string(run.solver_seed),
                   WithoutCommas(TextAt(row, "stop")),
                   Verified(row),
-                  Cell(NumberAt(row, "iterations")),
-                  Cell(SumOfCalls(row)),
-                  Cell(energy),
-                  Cell(gap),
-                  Cell(NumberAt(row, "gradient_norm")),
+                  NumberCell(NumberAt(row, "iterations")),
+                  NumberCell(SumOfCalls(row)),
+                  NumberCell(energy),
+                  NumberCell(gap),
+                  NumberCell(NumberAt(row, "gradient_norm")),
                   knows_basin ? std::to_string(run.basin + 1) : "",
-                  Cell(NumberAt(row, "rms_orthogonal")),
+                  NumberCell(NumberAt(row, "rms_orthogonal")),
                   FlagsText(row),
                   WithoutCommas(TextAt(row, "message")),
                   std::to_string(run.rows.size()),
                   std::to_string(run.num_failed),
-                  Cell(seconds.median),
-                  Cell(seconds.low),
-                  Cell(seconds.high),
-                  Cell(seconds.median / instance.unit_seconds)});
+                  NumberCell(seconds.median),
+                  NumberCell(seconds.low),
+                  NumberCell(seconds.high),
+                  NumberCell(seconds.median / instance.unit_seconds)});
   }
   return table;
 }
@@ -195,7 +192,7 @@ CsvTable SolverTable(const BenchResults& results) {
                                           basins ? std::to_string(counts.best_basin) : "",
                                           basins ? std::to_string(counts.of_basins) : ""};
         for (std::size_t k = 0; k < costs.size(); ++k) {
-          cells.push_back(Cell(ChargedMean(costs[k], s, Shift(kBenchCosts[k]))));
+          cells.push_back(NumberCell(ChargedMean(costs[k], s, Shift(kBenchCosts[k]))));
         }
         table.AddRow(std::move(cells));
       }

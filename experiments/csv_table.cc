@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -30,6 +31,8 @@ std::string Joined(const std::vector<std::string>& cells) {
 }
 
 }  // namespace
+
+std::string NumberCell(double value) { return std::isfinite(value) ? NumberText(value) : ""; }
 
 std::size_t CsvTable::ColumnIndex(const std::string& column) const {
   const auto found = std::find(columns_.begin(), columns_.end(), column);

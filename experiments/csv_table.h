@@ -7,6 +7,9 @@
 
 namespace batten {
 
+/// `value` so that it reads back to the same double; empty where it is no finite number.
+std::string NumberCell(double value);
+
 /// A small table of text cells with named columns, as it stands in a CSV file: what the verdicts
 /// and figures of a reproduction are computed from. Cells hold no commas, quotes or line ends.
 class CsvTable {

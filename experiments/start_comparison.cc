@@ -51,9 +51,6 @@ std::vector<CurveShape> BasinShapes(const CurveFit& fit, const std::vector<Basin
   return shapes;
 }
 
-/// Empty where there is none: the median of no runs.
-std::string NumberCell(double value) { return std::isfinite(value) ? NumberText(value) : ""; }
-
 /// What the curves that a solver's runs end in are like, as cells.
 std::vector<std::string> EndCells(const std::vector<int>& basins_of_ends,
                                   const std::vector<CurveShape>& shapes) {

@@ -1,14 +1,9 @@
 #include "experiments/trace.h"
 
-#include <cmath>
-
-#include "cost_functions/options.h"
+#include "experiments/csv_table.h"
 
 namespace batten {
 namespace {
-
-/// A field that is no finite number stays empty.
-std::string Field(double value) { return std::isfinite(value) ? NumberText(value) : ""; }
 
 /// Quoted where a comma, a quote or a line break would end the field (RFC 4180).
 std::string Quoted(const std::string& text) {
@@ -37,14 +32,14 @@ std::string TraceCsv(const std::vector<TraceRow>& trace, const std::vector<std::
     }
     for (const double value :
          {row.seconds, row.cpu_seconds, row.energy, row.gradient_norm, row.step_norm}) {
-      text += ',' + Field(value);
+      text += ',' + NumberCell(value);
     }
-    if (is_constrained) text += ',' + Field(row.violation);
+    if (is_constrained) text += ',' + NumberCell(row.violation);
     for (std::size_t k = 0; k < term_names.size(); ++k) {
       const bool only_one = row.term_energies.empty() && term_names.size() == 1;
       text += ',';
-      if (only_one) text += Field(row.energy);
-      if (k < row.term_energies.size()) text += Field(row.term_energies[k]);
+      if (only_one) text += NumberCell(row.energy);
+      if (k < row.term_energies.size()) text += NumberCell(row.term_energies[k]);
     }
     text += '\n';
   }
