@@ -214,40 +214,39 @@ bool TryProblems(const StrictObject& file, const BenchSuite& suite) {
   return true;
 }
 
-std::vector<std::string> LabelsOf(const BenchSuite& suite, const std::string& axis) {
+/// One axis of a matrix, as exclusions name it.
+struct Axis {
+  std::string key;
+  std::string kind;  // what one of its labels is
   std::vector<std::string> labels;
-  if (axis == "problems") {
-    for (const BenchProblem& problem : suite.problems) labels.push_back(problem.label);
-  } else if (axis == "terms") {
-    for (const BenchTerms& terms : suite.terms) labels.push_back(terms.label);
-  } else {
-    for (const NameSpec& solver : suite.solvers) labels.push_back(solver.ToString());
-  }
-  return labels;
-}
+};
 
 /// A pattern that matches nothing is a slip of the pen.
-bool CheckPatterns(const StrictObject& file, const BenchSuite& suite, const std::string& place,
-                   const std::string& axis, const std::vector<std::string>& patterns) {
-  const std::vector<std::string> labels = LabelsOf(suite, axis);
+bool CheckPatterns(const StrictObject& file, const std::string& place, const Axis& axis,
+                   const std::vector<std::string>& patterns) {
   for (std::size_t k = 0; k < patterns.size(); ++k) {
-    const bool matches = std::any_of(labels.begin(), labels.end(), [&](const std::string& label) {
-      return MatchesPattern(patterns[k], label);
-    });
+    const bool matches =
+        std::any_of(axis.labels.begin(), axis.labels.end(),
+                    [&](const std::string& label) { return MatchesPattern(patterns[k], label); });
     if (matches) continue;
-    const std::string kind = axis == "problems" ? "problem" : axis == "terms" ? "terms" : "solver";
-    return file.Complain(place + "/" + axis + "/" + std::to_string(k),
-                         UnknownNameMessage(kind, patterns[k], labels));
+    return file.Complain(place + "/" + axis.key + "/" + std::to_string(k),
+                         UnknownNameMessage(axis.kind, patterns[k], axis.labels));
   }
   return true;
 }
 
 bool CheckExclusions(const StrictObject& file, const BenchSuite& suite) {
+  Axis problems = {"problems", "problem", {}};
+  Axis terms = {"terms", "terms", {}};
+  Axis solvers = {"solvers", "solver", {}};
+  for (const BenchProblem& problem : suite.problems) problems.labels.push_back(problem.label);
+  for (const BenchTerms& choice : suite.terms) terms.labels.push_back(choice.label);
+  for (const NameSpec& solver : suite.solvers) solvers.labels.push_back(solver.ToString());
   for (const BenchExclusion& exclusion : suite.exclusions) {
     const std::string place = exclusion.place.substr(1);
-    if (!CheckPatterns(file, suite, place, "problems", exclusion.problems) ||
-        !CheckPatterns(file, suite, place, "terms", exclusion.terms) ||
-        !CheckPatterns(file, suite, place, "solvers", exclusion.solvers)) {
+    if (!CheckPatterns(file, place, problems, exclusion.problems) ||
+        !CheckPatterns(file, place, terms, exclusion.terms) ||
+        !CheckPatterns(file, place, solvers, exclusion.solvers)) {
       return false;
     }
   }
