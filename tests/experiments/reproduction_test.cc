@@ -4,6 +4,7 @@
 
 #include "experiments/reproduction_page.h"
 #include "tests/experiments/figure_files.h"
+#include "tests/problems/scratch_folder.h"
 
 namespace batten {
 namespace {
@@ -71,10 +72,8 @@ class Reproducing : public ::testing::Test {
   double fraction_ = 0.0;
   std::string text_;
   Reproduction reproduction_ = Numbers(&num_runs_);
-  // One of its own for each test: ctest runs them at the same time.
-  std::filesystem::path folder_ =
-      Folder(std::string("reproduction ") +
-             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  ScratchFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(Reproducing, WritesTablesFiguresAndPages) {
