@@ -12,6 +12,7 @@ constexpr int kPanelWidth = 560;
 constexpr int kPanelHeight = 320;
 constexpr std::size_t kMostText = 90;
 constexpr int kLegendLine = 17;  // pixels
+constexpr int kLeftMargin = 10;  // of a graph, in characters
 
 // Okabe & Ito, Color Universal Design, 2008, without the yellow.
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -83,8 +84,8 @@ std::string NamedTics(const std::vector<std::string>& names) {
 int LegendWidth(const PlotPanel& panel) {
   std::size_t longest = 0;
   for (const PlotSeries& series : panel.series) longest = std::max(longest, series.label.size());
-  constexpr double kSmaller = 0.7;
-  constexpr int kMark = 8;
+  constexpr double kSmaller = 0.6;
+  constexpr int kMark = 6;
   const auto shown = static_cast<double>(std::min(longest, kMostText));
   return panel.legend && longest > 0 ? kMark + static_cast<int>(kSmaller * shown) : 2;
 }
@@ -137,6 +138,15 @@ std::string PanelPlot(const PlotPanel& panel, int* num_series, std::string* data
   return plot.empty() ? "plot NaN notitle\n" : plot + "\n";
 }
 
+/// A panel's, so that a long legend leaves room for what it explains.
+int PanelWidth(const std::vector<PlotPanel>& panels) {
+  constexpr int kLeastGraph = 300;
+  constexpr int kCharacter = 10;  // of the plot's font, as gnuplot takes it for margins
+  int legend = 0;
+  for (const PlotPanel& panel : panels) legend = std::max(legend, LegendWidth(panel));
+  return std::max(kPanelWidth, kLeastGraph + kCharacter * (kLeftMargin + legend));
+}
+
 /// A panel's, so that its legend is in the picture.
 int PanelHeight(const std::vector<PlotPanel>& panels) {
   std::ptrdiff_t longest = 0;
@@ -155,7 +165,7 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
                       FileBatch* batch) {
   const int count = static_cast<int>(panels.size());
   const int rows = (count + columns - 1) / columns;
-  const int width = kPanelWidth * std::min(columns, count);
+  const int width = PanelWidth(panels) * std::min(columns, count);
   const int height = PanelHeight(panels) * rows;
   std::string data;
   std::string commands = "set multiplot layout " + std::to_string(rows) + "," +
@@ -171,7 +181,8 @@ FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& pan
                           std::string(panel.y_label.empty() ? "1, " : "4, ")
                     : "set size noratio\nset border 3 linewidth 0.8\nset tics nomirror out scale "
                       "0.6 font ',10'\nset offsets 0, 0, 0, 0\n" +
-                          NamedTics(panel.x_names) + "set margins 10, ";
+                          NamedTics(panel.x_names) + "set margins " + std::to_string(kLeftMargin) +
+                          ", ";
     commands += std::to_string(LegendWidth(panel)) + (!panel.equal_scale      ? ", 4.5, 2.5\n"
                                                       : panel.x_label.empty() ? ", 1, 2.5\n"
                                                                               : ", 2.5, 2.5\n");

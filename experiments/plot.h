@@ -44,8 +44,9 @@ struct PlotPanel {
 /// Lines of kOneOfMany that are told apart.
 inline constexpr int kMostOfMany = 48;
 
-/// Panels in rows of `columns`, as high as the longest legend needs, STEM.svg with script and data
-/// beside it as DrawFigure() has it. Points that a logarithmic axis cannot show are left out.
+/// Panels in rows of `columns`, as high and wide as the longest legend needs, STEM.svg with script
+/// and data beside it as DrawFigure() has it. Points that a logarithmic axis cannot show are left
+/// out.
 FigureResult DrawPlot(const std::string& stem, const std::vector<PlotPanel>& panels, int columns,
                       FileBatch* batch);
 

@@ -36,9 +36,8 @@ class BuildCommit : public ::testing::Test {
                 arguments);
   }
   std::string Mark() const {
-    EXPECT_TRUE(Does("cmake -DGIT=git -DSOURCE=" + tree().string() +
-                     " -DTEMPLATE=" + (folder_ / "template").string() +
-                     " -DOUTPUT=" + output().string() +
+    EXPECT_TRUE(Does("cmake -DGIT=git -DSOURCE=" + tree().string() + " -DTEMPLATE=" +
+                     (folder_ / "template").string() + " -DOUTPUT=" + output().string() +
                      " -P " BATTEN_SOURCE_DIR "/experiments/build_commit.cmake"));
     std::ifstream file(output());
     std::string mark;

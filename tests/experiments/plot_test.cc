@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdio>
 #include <fstream>
 #include <set>
 
@@ -41,6 +42,32 @@ TEST(DrawPlot, GivesEachOfManyLinesALookOfItsOwn) {
   }
   EXPECT_EQ(num_titles, kMostOfMany);
   EXPECT_EQ(static_cast<int>(looks.size()), kMostOfMany);
+}
+
+// In gnuplot's svg a character of a margin has 9.8 pixels at 14 points.
+TEST(DrawPlot, LeavesRoomForTheGraphBesideLongNames) {
+  constexpr double kCharacter = 9.8;
+  const ScratchFolder folder;
+  for (const std::size_t length : {10, 30, 60, 90}) {
+    PlotPanel panel;
+    PlotSeries series;
+    series.label = std::string(length, 'n');
+    series.x = series.y = {1.0, 2.0};
+    panel.series = {series};
+    FileBatch batch;
+    DrawPlot(folder.path() / "long", {panel, panel}, 2, &batch);
+    std::string error;
+    ASSERT_TRUE(batch.Commit(&error)) << error;
+    std::ifstream script(folder.path() / "long.gp");
+    double width = 0.0, left = 0.0, right = 0.0;
+    for (std::string line; std::getline(script, line);) {
+      sscanf(line.c_str(), "set terminal svg size %lf", &width);
+      sscanf(line.c_str(), "set margins %lf, %lf", &left, &right);
+    }
+    EXPECT_GE(width / 2 - kCharacter * (left + right), 300.0) << length;
+    // The legend's letters have 9 / 14 of the font's size, of its height 0.6 on average.
+    EXPECT_GE(kCharacter * right, 9 * 0.6 * static_cast<double>(length)) << length;
+  }
 }
 
 }  // namespace
