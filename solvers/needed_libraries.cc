@@ -14,9 +14,10 @@ std::vector<std::string> NeededNames(const link_map& object) {
   for (const ElfW(Dyn)* entry = object.l_ld; entry->d_tag != DT_NULL; ++entry) {
     if (entry->d_tag != DT_STRTAB) continue;
     // An address, which the loader has moved to where the object is; not on every processor.
-    const ElfW(Addr) address = entry->d_un.d_ptr;
-    strings =
-        reinterpret_cast<const char*>(address < object.l_addr ? address + object.l_addr : address);
+    ElfW(Addr) address = entry->d_un.d_ptr;
+    if (address < object.l_addr) address += object.l_addr;
+    strings = reinterpret_cast<const char*>(object.l_ld) +
+              (address - reinterpret_cast<ElfW(Addr)>(object.l_ld));
   }
   std::vector<std::string> names;
   if (strings == nullptr) return names;
