@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "problems/fit_problem.h"
 #include "solvers/normal_spectrum.h"
 
 namespace batten {
@@ -67,7 +68,15 @@ std::string LspiaSolver::WhyUnsupported(const Objective& objective) const {
   if (step_rule_ != "diagonal") {
     return kNeedsDiagonalSteps;
   }
-  return FairingWeights::WhyNot(objective, "lspia");
+  why = FairingWeights::WhyNot(objective, "lspia");
+  if (!why.empty()) return why;
+  const int n = objective.problem().curve_fit()->basis().num_control_points();
+  if (fairing_factors_.empty() && (fairing_first_ > fairing_last_ || fairing_first_ >= n)) {
+    return "lspia weighs fairing from control point fairing_first=" +
+           std::to_string(fairing_first_) + " to fairing_last=" + std::to_string(fairing_last_) +
+           ", which are none of 0 to " + std::to_string(n - 1) + "; use others or fairing_factor=1";
+  }
+  return "";
 }
 
 void LspiaSolver::WeighFairing() {

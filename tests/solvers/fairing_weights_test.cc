@@ -101,6 +101,12 @@ TEST(FairingWeights, RefuseWhatTheyDoNotWeigh) {
     EXPECT_THAT(WhyUnsupported(*fair, "lspia/fairing_factor=2/step=" + std::string(step)),
                 ::testing::HasSubstr("use step=diagonal"));
   }
+  for (const char* range : {"fairing_first=9/fairing_last=3", "fairing_first=14"}) {
+    const std::string why = WhyUnsupported(*fair, "lspia/fairing_factor=2/" + std::string(range));
+    ExpectOneSentenceWithAWayOut(why, "lspia");
+    EXPECT_THAT(why, ::testing::HasSubstr("none of 0 to 13"));
+  }
+  EXPECT_EQ(WhyUnsupported(*fair, "lspia/fairing_factor=2/fairing_first=13"), "");
   SetConstraints({HoldCurve(*fair, 0.4, 0, 0.1), HoldCurve(*fair, 0.4, 1, 0.1)}, fair.get());
   EXPECT_THAT(WhyUnsupported(*fair, "lspia/fairing_factor=2"),
               ::testing::HasSubstr("without constraints"));
