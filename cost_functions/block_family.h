@@ -73,8 +73,8 @@ class BlockFamily {
   /// The same of the plain residuals where there is a loss: block b is row b of each coordinate.
   virtual const RowSource* rows_without_loss() const { return nullptr; }
 
-  /// The points behind the blocks, if E is sum_i w_i |C(t_i) - Q_i|^2 with t_i a variable and there
-  /// is no loss. Null otherwise.
+  /// The points behind the blocks, if their residuals are root(w_i) (C(t_i) - Q_i) with t_i a
+  /// variable. Null otherwise.
   virtual const FreeSites* free_sites() const { return nullptr; }
 
   /// Whether blocks depend on each other's parameters, whose order is kept: single blocks as Ceres

@@ -40,7 +40,9 @@ class FreeFamily final : public BlockFamily {
       sites_.weights[i] = weight * site_weight;
       root_weights_[i] = std::sqrt(site_weight);
     }
-    is_distance_ = this->loss() == nullptr && IsDistance();
+    sites_.term_weight = weight;
+    sites_.loss = weight > 0.0 ? this->loss() : nullptr;
+    is_distance_ = IsDistance();
   }
 
   int size() const override { return static_cast<int>(root_weights_.size()); }

@@ -1,6 +1,8 @@
 #ifndef BATTEN_COST_FUNCTIONS_FREE_SITES_H_
 #define BATTEN_COST_FUNCTIONS_FREE_SITES_H_
 
+#include <ceres/loss_function.h>
+
 #include <cmath>
 #include <limits>
 
@@ -9,9 +11,10 @@
 namespace batten {
 
 /// Data points whose parameters are variables: t_i stands at x[parameter_offset + i], and
-/// E = sum_i w_i |C(t_i) - Q_i|^2. What methods that know this structure work on instead of single
-/// residual blocks. Where parameters are projected, t_i is the foot point instead, and methods keep
-/// it at parameter_offset + i of a vector of their own, behind the control points.
+/// E = sum_i w_i |C(t_i) - Q_i|^2, with a loss E = W sum_i rho(w_i |C(t_i) - Q_i|^2 / W), W the
+/// term's weight. What methods that know this structure work on instead of single residual blocks.
+/// Where parameters are projected, t_i is the foot point instead, and methods keep it at
+/// parameter_offset + i of a vector of their own, behind the control points.
 struct FreeSites {
   const BsplineBasis* basis = nullptr;
   int dimension = 0;
@@ -20,6 +23,8 @@ struct FreeSites {
   bool projected = false;
   Points points;            ///< Q, scaled as inside, m x d.
   Eigen::VectorXd weights;  ///< w_i >= 0, the term's weight in them.
+  double term_weight = 1.0;
+  const ceres::LossFunction* loss = nullptr;  ///< rho; null: the identity, or W is 0.
 };
 
 /// Where t is on the curve: its place in the domain and the span there.

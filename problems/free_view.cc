@@ -74,7 +74,7 @@ std::unique_ptr<FreeView> FreeView::Make(const Problem& problem) {
       view->sites_ = term.family->free_sites();
     } else if (term.family->rows() != nullptr) {
       rows.push_back(term.family->rows());
-    } else if (term.family->free_sites() == nullptr && term.family->loss() == nullptr) {
+    } else if (term.family->free_sites() == nullptr) {
       view->curved_terms_.push_back(term.family.get());
     } else {
       return nullptr;

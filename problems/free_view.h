@@ -10,11 +10,11 @@
 namespace batten {
 
 /// A problem E(P, t) = sum_i w_i |C(t_i) - Q_i|^2 + ||A P - B||^2 with the parameters t as
-/// variables, as methods see it that know this structure: one free_parameter term, any number of
-/// terms that are compiled rows, and linear constraints that bind control points to each other or
-/// hold parameters. Beside them any terms in control points that are not affine, without loss. Or
-/// the same with t projected (one foot_point term): P alone is variable then, and methods keep t
-/// behind it in vectors of their own.
+/// variables, as methods see it that know this structure: one free_parameter term, with or without
+/// a loss, any number of terms that are compiled rows, and linear constraints that bind control
+/// points to each other or hold parameters. Beside them any terms in control points that are no
+/// compiled rows, not being affine or having a loss. Or the same with t projected (one foot_point
+/// term): P alone is variable then, and methods keep t behind it in vectors of their own.
 class FreeView {
  public:
   /// Null for any other problem.
@@ -41,8 +41,8 @@ class FreeView {
   Eigen::VectorXd WithoutParameters(const Eigen::VectorXd& all) const;
   /// A'A and A'B of the other terms; null where there are none.
   const NormalBand* other_terms() const { return other_terms_.get(); }
-  /// Terms in control points alone that are no compiled rows, such as curve_fairing; each of their
-  /// blocks depends on p + 1 neighbours at most.
+  /// Terms in control points alone that are no compiled rows, such as curve_fairing, and those with
+  /// a loss; each of their blocks depends on p + 1 neighbours at most.
   const std::vector<const BlockFamily*>& curved_terms() const { return curved_terms_; }
 
  private:

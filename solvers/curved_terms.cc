@@ -1,8 +1,27 @@
 #include "solvers/curved_terms.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace batten {
+namespace {
+
+/// Of each block the term's weight times rho', with which its squared residuals touch E from above.
+bool BlockWeights(const BlockFamily& term, const Eigen::VectorXd& x, std::vector<double>* weights) {
+  weights->assign(static_cast<std::size_t>(term.size()), term.weight());
+  if (term.loss() == nullptr) return true;
+  Eigen::VectorXd residuals;
+  if (term.Residuals(x, &residuals) != Status::kOk) return false;
+  const int k = term.num_residuals();
+  for (int block = 0; block < term.size(); ++block) {
+    double rho[3];
+    term.loss()->Evaluate(residuals.segment(block * k, k).squaredNorm(), rho);
+    (*weights)[static_cast<std::size_t>(block)] *= std::max(rho[1], 0.0);
+  }
+  return true;
+}
+
+}  // namespace
 
 CurvedTerms::CurvedTerms(const FreeView& view)
     : basis_(*view.sites().basis),
@@ -31,10 +50,12 @@ bool CurvedTerms::AddGaussNewton(const BlockFamily& term, const Eigen::VectorXd&
                                  NormalBand* band, std::vector<double>* diagonal) const {
   std::vector<Eigen::Triplet<double>> entries;
   if (term.Jacobian(x, 0, &entries) != Status::kOk) return false;
+  std::vector<double> weights;
+  if (!BlockWeights(term, x, &weights)) return false;
   SparseRows jacobian(static_cast<Eigen::Index>(term.size()) * term.num_residuals(), x.size());
   jacobian.setFromTriplets(entries.begin(), entries.end());
-  const double weight = term.weight();
   for (int row = 0; row < jacobian.rows(); ++row) {
+    const double weight = weights[static_cast<std::size_t>(row / term.num_residuals())];
     for (SparseRows::InnerIterator a(jacobian, row); a; ++a) {
       const auto i = static_cast<int>(a.col()) - offset_;
       (*diagonal)[static_cast<std::size_t>(i)] += weight * a.value() * a.value();

@@ -10,8 +10,8 @@
 
 namespace batten {
 
-/// The terms of a free problem that are not affine (FreeView::curved_terms), summed into a model of
-/// E in the control points.
+/// The terms of a free problem that are not affine or have a loss (FreeView::curved_terms), summed
+/// into a model of E in the control points.
 class CurvedTerms {
  public:
   explicit CurvedTerms(const FreeView& view);
@@ -20,9 +20,9 @@ class CurvedTerms {
   /// Products with second derivatives that an exact sum takes.
   int num_products() const { return hessian_.has_value() ? hessian_->num_products() : 0; }
   /// Adds energy, half gradient and half Hessian at all variables x (`exact`: with second
-  /// derivatives, else Gauss and Newton's J'J), and to `diagonal` that of J'J, n d numbers. `band`:
-  /// blocks of d x d, p + 1 to a row, cyclic where the curve is closed. False where E or a
-  /// derivative is not finite; sums are then of no use.
+  /// derivatives, else Gauss and Newton's J'J, weighed by rho' of losses), and to `diagonal` that
+  /// of J'J, n d numbers. `band`: blocks of d x d, p + 1 to a row, cyclic where the curve is
+  /// closed. False where E or a derivative is not finite; sums are then of no use.
   bool AddTo(const Eigen::VectorXd& x, bool exact, double* energy, Eigen::VectorXd* half_gradient,
              NormalBand* band, std::vector<double>* diagonal);
 

@@ -17,7 +17,8 @@ SolverInfo BaseInfo(const std::string& name, const std::string& summary,
   info.summary = summary;
   info.source = source;
   info.needs = {"free parameters"};
-  info.supports = {"linear constraints", "held parameters", "weights", "affine terms"};
+  info.supports = {"linear constraints", "held parameters", "weights", "losses",
+                   "terms in control points"};
   info.native_rule = NativeRule::kStep;
   return info;
 }
@@ -32,12 +33,15 @@ std::vector<OptionInfo> ModelOptions(double damping) {
 }  // namespace
 
 std::string FootIteration::WhyUnsupported(const Objective& objective) const {
-  return WhyNoAffineTerms(objective, Info().name);
+  return WhyNoFreeView(objective, Info().name);
 }
 
 std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
   found_no_part_ = false;
+  // Models for points lie above E and touch it, but for terms that are not affine.
+  const bool is_bound = kind_ == FootModelKind::kPoint;
+  searches_ = search_ || (is_bound && !objective()->free_view()->curved_terms().empty());
   model_ = std::make_unique<FootModel>(*objective()->free_view(), context()->threads());
   const Status status = Complete(x);
   if (status != Status::kOk) return Ended(status);
@@ -92,7 +96,7 @@ Eigen::VectorXd FootIteration::MovedBy(const Eigen::VectorXd& all, const Eigen::
 }
 
 Status FootIteration::MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
-  if (search_) return Map(x, g_of_x);
+  if (searches_) return Map(x, g_of_x);
   Eigen::VectorXd all, step;
   const Status status = FindStep(x, &all, &step);
   if (status == Status::kOk) *g_of_x = MovedBy(all, step, 1.0);
@@ -100,7 +104,7 @@ Status FootIteration::MapLeading(const Eigen::VectorXd& x, Eigen::VectorXd* g_of
 }
 
 Status FootIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
-  if (!search_) {
+  if (!searches_) {
     const Status status = MapLeading(x, g_of_x);
     return status == Status::kOk ? Complete(g_of_x) : status;
   }

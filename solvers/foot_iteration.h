@@ -27,7 +27,7 @@ class FootIteration : public FixedPoint {
 
  protected:
   /// `damping`: of the model, relative to its diagonal. With `search` a step is halved while E
-  /// rises; where no part of it lowers E the run ends.
+  /// rises; where no part of it lowers E the run ends. kPoint searches where terms are not affine.
   FootIteration(FootModelKind kind, double damping, bool search)
       : kind_(kind), damping_(damping), search_(search) {}
   /// The control points' step at all variables. False where the model has none.
@@ -46,6 +46,7 @@ class FootIteration : public FixedPoint {
   FootModelKind kind_;
   double damping_;
   bool search_;
+  bool searches_ = false;  // in this run
   std::unique_ptr<FootModel> model_;
   bool found_no_part_ = false;  // of the last step that lowers E
   StallGuard guard_;

@@ -69,6 +69,11 @@ FootModel::FootModel(const FreeView& view, int threads)
   span_energies_.resize(spans);
   span_decreases_.resize(spans);
   shares_.resize(static_cast<std::size_t>(workers_.num_threads()) + 1);
+  if (has_loss()) {
+    robust_weights_.resize(m);
+    loss_bends_.resize(m);
+  }
+  weights_ = has_loss() ? robust_weights_.data() : sites_.weights.data();
   PrepareSpans();
   for (Eigen::Index i = 0; i < sites_.weights.size(); ++i) {
     scale_ += sites_.weights[i] * sites_.points.row(i).squaredNorm();
@@ -96,8 +101,13 @@ bool FootModel::Sum(const Eigen::VectorXd& x, FootModelKind kind, double damping
   const double* control_points = x.data() + sites_.control_point_offset;
   PrepareCurve(control_points);
   SortBySpan(x.data() + sites_.parameter_offset);
-  WithKernel(
-      [&](const auto& kernel) { ForEachShare([&kernel](int span) { kernel.SumSpan(span); }); });
+  WithKernel([&](const auto& kernel) {
+    ForEachShare([&](int span) {
+      const double robust_energy = has_loss() ? WeighSpan(span) : 0.0;
+      kernel.SumSpan(span);
+      if (has_loss()) span_energies_[span] = robust_energy;
+    });
+  });
   AssembleBand();
   energy_ = 0.0;
   for (const double part : span_energies_) energy_ += part;

@@ -15,7 +15,10 @@ namespace batten {
 /// Which quadratic model of E in the control points a FootModel sums up, the parameters eliminated.
 /// With r = C(t) - Q, C' and C'' at t_i, and B the basis functions there, point i adds
 ///   w B B' (x) I - a g g',  g = B (x) C' (+ B' (x) r for kNewton)
-/// to the half Hessian and w B (x) r - a (C' . r) g to the half gradient.
+/// to the half Hessian and w B (x) r - a (C' . r) g to the half gradient. With a loss, w is the
+/// point's weight times rho'(s), the model then being that of a sum of squares that touches E from
+/// above, rho being concave; kNewton has the curvature of rho too, with c = 2 w_i^2 / W rho''(s):
+///   + c B B' (x) r r',  g + c / w (C' . r) B (x) r,  1 / a + c / w^2 (C' . r)^2.
 enum class FootModelKind {
   kPoint,      ///< PDM: a = 0. t stays.
   kTangent,    ///< TDM, and Gauss-Newton with t eliminated: a = w / ((1 + damping) |C'|^2).
@@ -43,7 +46,7 @@ class FootModel {
     return kind == FootModelKind::kNewton ? curved_terms_.num_products() : 0;
   }
   double parameter_damping() const { return damping_; }
-  /// What E is a difference of: sum_i w_i |Q_i|^2, for its rounding.
+  /// What E is a difference of: sum_i w_i |Q_i|^2, for its rounding; losses only lessen it.
   double scale() const { return scale_; }
   /// Factors the half Hessian + damping * (its diagonal for a = 0). False if that is not positive
   /// definite to working precision.
@@ -82,6 +85,7 @@ class FootModel {
   struct SpanPoints;
   template <int P, int D>
   struct Kernel;
+  bool has_loss() const { return sites_.loss != nullptr; }
   template <typename Body>
   void WithKernel(Body body);
   void PrepareSpans();
@@ -90,6 +94,7 @@ class FootModel {
   void CurveOfSpan(int span, const double* control_points, double* curve) const;
   void SortBySpan(const double* parameters);
   void FindRuns(const double* parameters);
+  double WeighSpan(int span);
   void ShareSpans();
   template <typename Body>
   void ForEachShare(Body body);
@@ -127,6 +132,10 @@ class FootModel {
   std::vector<double> denominators_;  // of the parameter's step; 0: it stays
   std::vector<double> scales_;        // w |C'|^2 times the damping
   std::vector<int> shares_;           // spans of each thread
+  // m each, empty without a loss, of the last Sum: w_i rho'(s_i), and 2 w_i / W rho'' / rho'.
+  std::vector<double> robust_weights_;
+  std::vector<double> loss_bends_;
+  const double* weights_;  // of the points: the sites' own, or robust_weights_
   // Per span: local x local of the half Hessian, upper triangle; local of the half gradient; p + 1
   // of the diagonal.
   std::vector<double> span_sums_;

@@ -35,7 +35,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
 #if BATTEN_HAS_AVX2_KERNELS
     if (kStatic && HasAvx2()) return SumWide(span);
 #endif
-    model.kind_ == FootModelKind::kNewton ? SumNewton<Pack>(span) : SumTangent<Pack>(span);
+    SumBy<Pack>(span);
   }
   /// Parameters' steps of one span, and what they lower the model by.
   void MoveSpan(int span, const double* step, double* parameters) const {
@@ -53,10 +53,13 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
   }
 
  private:
-#if BATTEN_HAS_AVX2_KERNELS
-  __attribute__((flatten, target("avx2"))) void SumWide(int span) const {
-    model.kind_ == FootModelKind::kNewton ? SumNewton<WidePack>(span) : SumTangent<WidePack>(span);
+  template <typename Pack>
+  inline __attribute__((always_inline)) void SumBy(int span) const {
+    if (model.kind_ != FootModelKind::kNewton) return SumTangent<Pack>(span);
+    model.has_loss() ? SumNewton<true, Pack>(span) : SumNewton<false, Pack>(span);
   }
+#if BATTEN_HAS_AVX2_KERNELS
+  __attribute__((flatten, target("avx2"))) void SumWide(int span) const { SumBy<WidePack>(span); }
   __attribute__((flatten, target("avx2"))) void MoveWide(int span, const double* step,
                                                          double* parameters) const {
     MovePacks<WidePack>(span, step, parameters);
@@ -90,14 +93,15 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
 
   /// Calls body with what is known at each pack of points, w, w times the factor a of g g', and
   /// C' . r.
-  template <typename Pack, typename Body>
+  template <bool kBent, typename Pack, typename Body>
   inline __attribute__((always_inline)) void ForEachEliminated(int span, const Body& body) const {
     this->template ForEachPack<Pack>(span, [&](const PointPack<Pack>& pack) {
       AtPoints<Pack> at;
       this->EvaluateCurve(span, pack, &at);
       this->EvaluateBasis(span, pack, &at);
       Pack along;
-      const Pack a = this->Eliminate(at, pack, &along);
+      if constexpr (kBent) this->EvaluateLoss(pack, &at);
+      const Pack a = this->template Eliminate<kBent>(at, pack, &along);
       body(at, pack.weight, pack.weight * a, along);
     });
   }
@@ -111,7 +115,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     std::fill_n(blocks, Pairs(k) * num_entries, Pack(0.0));
     CommonSums<Pack> common;
     Clear(&common);
-    ForEachEliminated<Pack>(
+    ForEachEliminated<false, Pack>(
         span, [&](const AtPoints<Pack>& at, const Pack& w, const Pack& wa, const Pack& along) {
           Pack m[Pairs(kDimension)], v[kDimension];
           for (int e = 0, entry = 0; e < d; ++e) {
@@ -150,8 +154,8 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
   }
 
   /// w B B' (x) I - w a g g', g = B (x) C' + B' (x) r: the upper triangle of g g', and the products
-  /// of basis functions apart.
-  template <typename Pack>
+  /// of basis functions apart. `kBent`: with the curvature of the loss.
+  template <bool kBent, typename Pack>
   inline __attribute__((always_inline)) void SumNewton(int span) const {
     const int k = order(), d = dimension(), size = k * d;
     Pack triangle[Pairs(kSize)], products[Pairs(kOrder)];
@@ -159,7 +163,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     std::fill_n(products, Pairs(k), Pack(0.0));
     CommonSums<Pack> common;
     Clear(&common);
-    ForEachEliminated<Pack>(
+    ForEachEliminated<kBent, Pack>(
         span, [&](const AtPoints<Pack>& at, const Pack& w, const Pack& wa, const Pack& along) {
           for (int e = 0; e < d; ++e) common.energy = common.energy + w * at.r[e] * at.r[e];
           Pack g[kSize];
@@ -167,6 +171,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
             for (int e = 0; e < d; ++e) {
               Pack& entry = g[j * d + e];
               entry = at.basis[j] * at.first[e] + at.slope[j] * at.r[e];
+              if constexpr (kBent) entry = entry + at.loss_bend * along * at.basis[j] * at.r[e];
               common.gradient[j * d + e] =
                   common.gradient[j * d + e] + (w * at.basis[j] * at.r[e] - wa * along * entry);
             }
@@ -181,6 +186,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
             const Pack factor = wa * g[x];
             for (int y = x; y < size; ++y, ++pair) triangle[pair] = triangle[pair] - factor * g[y];
           }
+          if constexpr (kBent) this->AddLossBend(at, w * at.loss_bend, triangle);
         });
     double* sums = model.SpanSums(span);
     for (int x = 0, pair = 0; x < size; ++x) {
@@ -235,12 +241,14 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     });
   }
 
-  /// g's of a point is C' . S (+ r . S' for kNewton), S the curve of the control points' steps.
+  /// g's of a point is C' . S (+ r . S' for kNewton, and what a loss adds), S the curve of the
+  /// control points' steps.
   template <typename Pack>
   inline __attribute__((always_inline)) void MovePacks(int span, const double* step,
                                                        double* parameters) const {
     const int k = order(), d = dimension();
     const bool is_newton = model.kind_ == FootModelKind::kNewton;
+    const bool is_bent = is_newton && model.has_loss();
     double moved[kSize];
     model.CurveOfSpan(span, step, moved);
     Pack decrease(0.0);
@@ -249,6 +257,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
       const Pack denominator = Pack::LoadFirst(&model.denominators_[pack.place], pack.count);
       AtPoints<Pack> at;
       this->EvaluateCurve(span, pack, &at);
+      if (is_bent) this->EvaluateLoss(pack, &at);
       Pack product = along;
       for (int e = 0; e < d; ++e) {
         Pack value(moved[(k - 1) * d + e]), slope(0.0);
@@ -258,6 +267,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
         }
         product = product + at.first[e] * value;
         if (is_newton) product = product + at.r[e] * slope;
+        if (is_bent) product = product + at.loss_bend * along * at.r[e] * value;
       }
       const Pack zero(0.0);
       const typename Pack::Mask moves = (zero < denominator) | (denominator < zero);

@@ -41,6 +41,7 @@ struct FootModel::SpanPoints {
     Pack second[kDimension];
     Pack basis[kOrder];
     Pack slope[kOrder];  // of the basis
+    Pack loss_bend;      // c / w, where the loss's curvature is asked for
   };
 
   template <typename Pack, typename Body>
@@ -57,7 +58,7 @@ struct FootModel::SpanPoints {
       }
       pack.t = Pack::Gather(model.places_.data(), places, 1);
       pack.u = pack.t - model.middles_[span];
-      pack.weight = Pack::Gather(model.sites_.weights.data(), pack.points, 1);
+      pack.weight = Pack::Gather(model.weights_, pack.points, 1);
       for (int lane = pack.count; lane < kRowPack; ++lane) pack.weight.Set(lane, 0.0);
       for (int e = 0; e < dimension(); ++e) {
         pack.q[e] = Pack::Gather(model.sites_.points.data() + e, pack.points, dimension());
@@ -106,8 +107,27 @@ struct FootModel::SpanPoints {
     return ((t <= begin) & (zero < along)) | ((end <= t) & (along < zero));
   }
 
-  /// The factor a of g g' over w; keeps what the parameters' steps need.
   template <typename Pack>
+  inline __attribute__((always_inline)) void EvaluateLoss(const PointPack<Pack>& pack,
+                                                          AtPoints<Pack>* at) const {
+    at->loss_bend = Pack::Gather(model.loss_bends_.data(), pack.points, 1);
+  }
+  /// Adds c B B' (x) r r', the upper triangle row by row.
+  template <typename Pack>
+  inline __attribute__((always_inline)) void AddLossBend(const AtPoints<Pack>& at, const Pack& c,
+                                                         Pack* triangle) const {
+    const int d = dimension(), size = order() * d;
+    Pack q[kSize];
+    for (int x = 0; x < size; ++x) q[x] = at.basis[x / d] * at.r[x % d];
+    for (int x = 0, pair = 0; x < size; ++x) {
+      const Pack factor = c * q[x];
+      for (int y = x; y < size; ++y, ++pair) triangle[pair] = triangle[pair] + factor * q[y];
+    }
+  }
+
+  /// The factor a of g g' over w; keeps what the parameters' steps need. `kBent`: with the loss's
+  /// curvature.
+  template <bool kBent, typename Pack>
   inline __attribute__((always_inline)) Pack Eliminate(const AtPoints<Pack>& at,
                                                        const PointPack<Pack>& pack,
                                                        Pack* along) const {
@@ -118,6 +138,7 @@ struct FootModel::SpanPoints {
       product = product + at.first[e] * at.r[e];
     }
     *along = product;
+    if constexpr (kBent) bend = bend + at.loss_bend * product * product;
     const Pack zero(0.0);
     Pack a = zero, denominator = zero;
     if (model.kind_ != FootModelKind::kPoint) {

@@ -92,6 +92,31 @@ void FootModel::FindRuns(const double* parameters) {
   runs_.push_back({0, view_.num_points()});
 }
 
+/// What a loss makes of the weights of a span's points. Returns their energy.
+double FootModel::WeighSpan(int span) {
+  const int k = order_, d = dimension_;
+  const double* curve = &curve_[static_cast<std::size_t>(span) * local_];
+  double energy = 0.0;
+  for (int place = span_begins_[span]; place < span_begins_[span + 1]; ++place) {
+    const int i = order_of_points_[place];
+    const double u = places_[place] - middles_[span];
+    double squared = 0.0;
+    for (int e = 0; e < d; ++e) {
+      double value = 0.0;
+      for (int power = k - 1; power >= 0; --power) value = value * u + curve[power * d + e];
+      squared += (value - sites_.points(i, e)) * (value - sites_.points(i, e));
+    }
+    const double part = sites_.weights[i] / sites_.term_weight;
+    double rho[3];
+    sites_.loss->Evaluate(part * squared, rho);
+    energy += sites_.term_weight * rho[0];
+    robust_weights_[i] = sites_.weights[i] * rho[1];
+    // A point without weight has no curvature either.
+    loss_bends_[i] = rho[1] > 0.0 ? 2.0 * part * rho[2] / rho[1] : 0.0;
+  }
+  return energy;
+}
+
 /// Whole spans to each thread, with about as many points.
 void FootModel::ShareSpans() {
   const int spans = basis_.num_domain_spans();

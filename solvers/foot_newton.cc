@@ -10,7 +10,8 @@ SolverInfo FootNewtonSolver::ClassInfo() {
   info.summary = "Newton's method, parameters eliminated, points looking for their feet";
   info.source = "Batten's own: docs/solvers/foot_newton.md";
   info.needs = {"free parameters"};
-  info.supports = {"linear constraints", "held parameters", "weights", "terms in control points"};
+  info.supports = {"linear constraints", "held parameters", "weights", "losses",
+                   "terms in control points"};
   info.native_rule = NativeRule::kGradient;
   info.options = {OptionInfo::Integer("longest_wait", 8, 0, 1'000'000,
                                       "steps after which feet are searched for no more")};

@@ -29,15 +29,8 @@ std::string WhyNoFreeView(const Objective& objective, const std::string& name) {
   std::string why_no_order = WhyNoOrder(objective.problem(), name);
   if (!why_no_order.empty()) return why_no_order;
   return name +
-         " takes one free_parameter or foot_point term without loss, terms in control points "
-         "without loss, and constraints that are linear in the control points or hold parameters; "
-         "use lbfgs";
-}
-
-std::string WhyNoAffineTerms(const Objective& objective, const std::string& name) {
-  std::string why = WhyNoFreeView(objective, name);
-  if (!why.empty() || objective.free_view()->curved_terms().empty()) return why;
-  return name + " takes terms that are affine beside free_parameter or foot_point; use newton";
+         " takes one free_parameter or foot_point term, terms in control points, and constraints "
+         "that are linear in the control points or hold parameters; use lbfgs";
 }
 
 std::string WhyNoFreeParameters(const Objective& objective, const std::string& name) {

@@ -61,8 +61,6 @@ class JointDescent : public Stepper {
 
 /// What a free problem's view is missing, as one sentence; empty: nothing.
 std::string WhyNoFreeView(const Objective& objective, const std::string& name);
-/// The same for methods that take no terms but affine ones beside that of the points.
-std::string WhyNoAffineTerms(const Objective& objective, const std::string& name);
 /// As WhyNoFreeView for methods that move parameters by themselves: these must not be projected.
 std::string WhyNoFreeParameters(const Objective& objective, const std::string& name);
 

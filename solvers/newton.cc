@@ -14,8 +14,8 @@ SolverInfo NewtonSolver::ClassInfo() {
   info.summary = "Newton's method with the banded Hessian, free parameters eliminated";
   info.source = "Nocedal & Wright, Numerical Optimization, sec. 3.3; de Boor, ch. XIV";
   info.needs = {"a curve"};
-  info.supports = {"linear constraints", "weights", "any rank (nearest to the start)",
-                   "free parameters", "any term and loss of fixed parameters"};
+  info.supports = {"linear constraints", "weights",  "any rank (nearest to the start)",
+                   "free parameters",    "any term", "losses"};
   info.native_rule = NativeRule::kGradient;
   return info;
 }

@@ -11,9 +11,17 @@ SolverInfo VarproSolver::ClassInfo() {
   info.source =
       "Golub & Pereyra, SINUM 10, 1973; Kaufman, BIT 15, 1975; Ruhe & Wedin, SIAM Rev. 22, 1980";
   info.needs = {"free parameters"};
-  info.supports = {"linear constraints", "held parameters", "weights", "affine terms"};
+  info.supports = {"linear constraints", "held parameters", "weights", "losses", "affine terms"};
   info.native_rule = NativeRule::kGradient;
   return info;
+}
+
+std::string VarproSolver::WhyUnsupported(const Objective& objective) const {
+  std::string why = WhyNoFreeParameters(objective, Info().name);
+  if (!why.empty() || objective.free_view()->curved_terms().empty()) return why;
+  return Info().name +
+         " solves for the control points, for which terms beside free_parameter must be affine and "
+         "without loss; use newton";
 }
 
 Status VarproSolver::Complete(Eigen::VectorXd* all) {

@@ -6,16 +6,13 @@
 namespace batten {
 
 /// Variable projection: the parameters are the variables, the control points always the
-/// least-squares ones for them. docs/solvers/varpro.md.
+/// least-squares ones for them, with losses those of one reweighted step. docs/solvers/varpro.md.
 class VarproSolver final : public JointDescent {
  public:
   static SolverInfo ClassInfo();
   explicit VarproSolver(const OptionValues& /*options*/) : JointDescent(FootModelKind::kTangent) {}
   SolverInfo Info() const override { return ClassInfo(); }
-  std::string WhyUnsupported(const Objective& objective) const override {
-    const std::string why = WhyNoFreeParameters(objective, Info().name);
-    return why.empty() ? WhyNoAffineTerms(objective, Info().name) : why;
-  }
+  std::string WhyUnsupported(const Objective& objective) const override;
 
  private:
   Status Complete(Eigen::VectorXd* all) override;
