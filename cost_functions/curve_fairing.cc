@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "cost_functions/functor_family.h"
@@ -19,6 +20,13 @@ template <CurvatureMeasure kMeasure>
 double Factor(const FitSetting& setting, const OptionValues& options) {
   const double unit = options.Word("units") == "scale_free" ? setting.size : setting.scale;
   return std::pow(unit, kMeasure == kBending ? 3 : 5);
+}
+
+/// What rounding of control points as large as the data leaves of the speed of a curve that crosses
+/// them.
+double LeastSpeed(const FitSetting& setting) {
+  constexpr double kRoundings = 64.0 * std::numeric_limits<double>::epsilon();
+  return kRoundings * setting.size / setting.basis->domain_length();
 }
 
 /// Whether products of four derivatives by the parameter are normal numbers: |N'| is at most
@@ -83,8 +91,8 @@ class CurveFairingTerm final : public Term {
   static std::unique_ptr<BlockFamily> Make(const FitSetting& setting, const OptionValues& options) {
     using Functor = CurveFairingResidual<kMeasure>;
     return std::make_unique<FunctorFamily<Functor>>(
-        setting, Functor(options, Factor<kMeasure>(setting, options)), options.Real("weight"),
-        MakeLoss(options, setting.size));
+        setting, Functor(options, Factor<kMeasure>(setting, options), LeastSpeed(setting)),
+        options.Real("weight"), MakeLoss(options, setting.size));
   }
 };
 

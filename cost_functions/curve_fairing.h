@@ -21,7 +21,8 @@ enum class CurvatureMeasure {
 ///   bending    r = sqrt(w) (a ^ b) / |a|^(5/2),
 ///   variation  r = sqrt(w) (|a|^2 (a ^ c) - 3 (a . b) (a ^ b)) / |a|^(11/2),
 /// since the curvature as a bivector is kappa = (a ^ b) / |a|^3 and ds = |a| du. Minors lose no
-/// digits where the curve is nearly straight, and are smooth where it is. No value where |a| = 0.
+/// digits where the curve is nearly straight, and are smooth where it is. No value where |a| is 0
+/// to rounding, as at a cusp: its direction is noise there, and so were any step.
 template <CurvatureMeasure kMeasure>
 struct CurveFairingResidual {
   static TermInfo Info();
@@ -36,8 +37,11 @@ struct CurveFairingResidual {
     return degree > 2 && dimension > 1;
   }
 
-  CurveFairingResidual(const OptionValues& options, double factor)
-      : points(options.Integer("points")), factor_(factor) {}
+  /// `least_speed`: |a| that is not rounding yet.
+  CurveFairingResidual(const OptionValues& options, double factor, double least_speed)
+      : points(options.Integer("points")),
+        factor_(factor),
+        least_squared_speed_(least_speed * least_speed) {}
 
   std::shared_ptr<const Sites> MakeSites(const FitSetting& setting) const;
 
@@ -58,7 +62,7 @@ struct CurveFairingResidual {
       squared_speed += a[i] * a[i];
       along += a[i] * b[i];
     }
-    if (!(squared_speed > T(0.0))) return false;
+    if (!(squared_speed > T(least_squared_speed_))) return false;
     // Reciprocals once, then products: a Jet's quotient rounds otherwise than a number's.
     const T over_squared = 1.0 / squared_speed;
     const T over_speed = sqrt(over_squared);
@@ -83,6 +87,7 @@ struct CurveFairingResidual {
 
  private:
   double factor_;
+  double least_squared_speed_;
 };
 
 /// Options: measure bending|variation; points of the rule per span; units.
