@@ -19,11 +19,11 @@ bool IsFast(const std::string& solver) {
   return solver == "newton" || solver == "foot_newton" || solver == "lm_schur";
 }
 
-std::string Term(bool is_free, const std::string& loss, const std::string& scale) {
+std::string RobustTerm(bool is_free, const std::string& loss, const std::string& scale) {
   return (is_free ? "free_parameter/loss=" : "foot_point/loss=") + loss + "/loss_scale=" + scale;
 }
 
-ParameterKind Kind(bool is_free) {
+ParameterKind KindOf(bool is_free) {
   return is_free ? ParameterKind::kFree : ParameterKind::kProjected;
 }
 
@@ -34,7 +34,7 @@ std::unique_ptr<Problem> MakeRobust(unsigned seed, bool is_free, const std::stri
   constexpr int kControlPoints = 10;
   const ThrownPoints points(seed, with_thrown_points);
   const auto fit = [&](const std::string& name, const std::string& scale) {
-    return points.Fit(Term(is_free, name, scale), Kind(is_free), kControlPoints);
+    return points.Fit(RobustTerm(is_free, name, scale), KindOf(is_free), kControlPoints);
   };
   const auto tukey = fit("tukey", "0.02");
   auto problem = fit(loss, loss == "tukey" ? "0.02" : "0.004");
@@ -43,9 +43,8 @@ std::unique_ptr<Problem> MakeRobust(unsigned seed, bool is_free, const std::stri
 }
 
 class RobustFreeFits : public ::testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Kinds, RobustFreeFits, ::testing::Bool(), [](const auto& is_free) {
-  return is_free.param ? "Free" : "Projected";
-});
+INSTANTIATE_TEST_SUITE_P(Kinds, RobustFreeFits, ::testing::Bool(),
+                         [](const auto& is_free) { return is_free.param ? "Free" : "Projected"; });
 
 /// E of a minimum that newton finds from x, by the functors' own gradient.
 double PolishedEnergy(Problem* problem, const Eigen::VectorXd& x) {
@@ -118,19 +117,20 @@ TEST_P(RobustFreeFits, OfNewtonEndQuadratically) {
 TEST_P(RobustFreeFits, AreHardlyWorseThanCleanOnesWhenATenthOfThePointsIsThrownAway) {
   constexpr int kIterations = 20;
   // Searches for all feet take their time: of projected ones one loss.
-  const auto losses = GetParam() ? std::vector{"cauchy", "tukey"} : std::vector{"tukey"};
+  const std::vector<std::string> losses =
+      GetParam() ? std::vector<std::string>{"cauchy", "tukey"} : std::vector<std::string>{"tukey"};
   std::map<std::string, std::vector<double>> ratios;
   for (unsigned seed = 100; seed < 150; ++seed) {
     const ThrownPoints clean(seed, false), thrown(seed, true);
-    const auto plain = clean.Fit(GetParam() ? "free_parameter" : "foot_point", Kind(GetParam()));
+    const auto plain = clean.Fit(GetParam() ? "free_parameter" : "foot_point", KindOf(GetParam()));
     std::map<std::string, double> references;
     for (const char* solver : kSolvers) {
       if (!WhyUnsupported(*plain, solver).empty()) continue;
       const SolverTrial trial(*plain, solver, {kIterations, 1e-6, true});
       references[solver] = clean.ErrorAtFeet(*plain, trial.all);
     }
-    for (const char* loss : losses) {
-      const auto robust = thrown.Fit(Term(GetParam(), loss, "mad"), Kind(GetParam()));
+    for (const std::string& loss : losses) {
+      const auto robust = thrown.Fit(RobustTerm(GetParam(), loss, "mad"), KindOf(GetParam()));
       for (const auto& [solver, reference] : references) {
         const SolverTrial trial(*robust, solver, {kIterations, 1e-6, true});
         ratios[solver + " " + loss].push_back(thrown.ErrorAtFeet(*robust, trial.all) / reference);

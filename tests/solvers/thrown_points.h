@@ -37,8 +37,8 @@ struct ThrownPoints {
       if (thrown) data.points.row(order[k]) += away;
     }
   }
-  std::unique_ptr<Problem> Fit(const std::string& terms,
-                               ParameterKind kind = ParameterKind::kFixed, int control_points = 20) const {
+  std::unique_ptr<Problem> Fit(const std::string& terms, ParameterKind kind = ParameterKind::kFixed,
+                               int control_points = 20) const {
     FitSpec spec = MakeSpec(3, true, control_points, terms);
     spec.parameters = Parameterization::kUniform;
     spec.parameter_kind = kind;
