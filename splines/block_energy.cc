@@ -42,17 +42,17 @@ double EnergyByCoordinate(const RowShape& shape, const RowBlock& block, const do
 
 template <BlockQuantity kQuantity>
 BlockEnergyKernel* Find(const RowShape& shape, bool wide) {
-  return WithFixedShape(shape.width, shape.dimension,
-                        [&](auto width, auto dimension) -> BlockEnergyKernel* {
-    if constexpr (width < 0) {
-      return EnergyByCoordinate<kQuantity>;
-    } else {
+  return WithFixedShape(
+      shape.width, shape.dimension, [&](auto width, auto dimension) -> BlockEnergyKernel* {
+        if constexpr (width < 0) {
+          return EnergyByCoordinate<kQuantity>;
+        } else {
 #if BATTEN_HAS_AVX2_KERNELS
-      if (wide) return energy_with_avx2::FixedEnergy<width, dimension, kQuantity>;
+          if (wide) return energy_with_avx2::FixedEnergy<width, dimension, kQuantity>;
 #endif
-      return energy_of_any_processor::FixedEnergy<width, dimension, kQuantity>;
-    }
-  });
+          return energy_of_any_processor::FixedEnergy<width, dimension, kQuantity>;
+        }
+      });
 }
 
 BlockEnergyKernel* Find(const RowShape& shape, BlockQuantity quantity, bool wide) {

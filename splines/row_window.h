@@ -57,8 +57,8 @@ void ResidualOfCoordinate(const RowShape& shape, const RowBlock& block, const do
 }
 
 /// gradient[j * dimension + c] = factor * a_j' residual.
-inline void GradientOfCoordinate(const RowShape& shape, const RowBlock& block, const RowPack* residual,
-                          int c, double factor, double* gradient) {
+inline void GradientOfCoordinate(const RowShape& shape, const RowBlock& block,
+                                 const RowPack* residual, int c, double factor, double* gradient) {
   const int packs = block.stride / kPackLanes;
   for (int j = 0; j < shape.width; ++j) {
     const RowPack* a = AsPacks(block.coefficients) + j * packs;
