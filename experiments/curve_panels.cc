@@ -15,9 +15,12 @@ constexpr double kWeights[] = {0.65214515486254614, 0.34785484513745386};
 
 constexpr double kLengthTolerance = 1e-9;  // of a panel's length, of which it is halved again
 constexpr double kMostTurning = 0.05;      // of a panel's tangent, in radians
-/// Of the control polygon's length: shorter panels are not halved again, so that cusps, at which a
-/// tangent turns at once, and noise end somewhere.
+/// Of the curve's length: shorter panels are not halved again, so that cusps, at which a tangent
+/// turns at once, end somewhere.
 constexpr double kShortest = 1e-6;
+/// Of the control polygon's length: what is shorter is noise. Control points of floating knots may
+/// be many lengths of the curve away, so that by kShortest of theirs nothing would be halved.
+constexpr double kNoise = 64.0 * std::numeric_limits<double>::epsilon();
 constexpr int kPanelsPerSpan = 4;   // to begin with: a span may bend both ways
 constexpr int kMostPanels = 40000;  // to begin with: a million spans are short enough
 
@@ -37,17 +40,23 @@ CurvePanels::CurvePanels(const BsplineCurve& curve) : curve_(curve), dimension_(
   const BsplineBasis& basis = curve.basis();
   const Points& control_points = curve.control_points();
   const auto n = control_points.rows();
+  double polygon_length = 0.0;
   for (Eigen::Index j = 1; j < n; ++j) {
-    polygon_length_ += (control_points.row(j) - control_points.row(j - 1)).norm();
+    polygon_length += (control_points.row(j) - control_points.row(j - 1)).norm();
   }
-  if (basis.periodic())
-    polygon_length_ += (control_points.row(0) - control_points.row(n - 1)).norm();
-  const int most = std::clamp(kMostPanels / basis.num_domain_spans(), 1, kPanelsPerSpan);
+  if (basis.periodic()) {
+    polygon_length += (control_points.row(0) - control_points.row(n - 1)).norm();
+  }
+  std::vector<int> spans;
+  double rough_length = 0.0;
   for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
-    if (basis.knots()[span] < basis.knots()[span + 1]) {
-      AddSpan(span, basis.degree() == 1 ? 1 : most);
-    }
+    if (!(basis.knots()[span] < basis.knots()[span + 1])) continue;
+    spans.push_back(span);
+    rough_length += Length(span, basis.knots()[span], basis.knots()[span + 1]);
   }
+  shortest_ = std::max(kShortest * rough_length, kNoise * polygon_length);
+  const int most = std::clamp(kMostPanels / basis.num_domain_spans(), 1, kPanelsPerSpan);
+  for (const int span : spans) AddSpan(span, basis.degree() == 1 ? 1 : most);
 }
 
 void CurvePanels::AddSpan(int span, int num_panels) {
@@ -68,12 +77,12 @@ void CurvePanels::Split(const Panel& whole) {
   Panel left = whole;
   Panel right = whole;
   left.end = right.begin = middle;
-  const double length = IntegrateSpeed(whole.span, whole.begin, middle) +
-                        IntegrateSpeed(whole.span, middle, whole.end);
-  const double roughly = IntegrateSpeed(whole.span, whole.begin, whole.end);
+  const double length =
+      Length(whole.span, whole.begin, middle) + Length(whole.span, middle, whole.end);
+  const double roughly = Length(whole.span, whole.begin, whole.end);
   const bool can_split = whole.begin < middle && middle < whole.end;
   // Written so that what is not finite is not halved.
-  const bool is_long = length > kShortest * polygon_length_;
+  const bool is_long = length > shortest_;
   const bool is_inexact = std::abs(roughly - length) > kLengthTolerance * length;
   if (can_split && is_long && (is_inexact || !IsStraight(whole))) {
     Split(left);
@@ -105,7 +114,7 @@ double CurvePanels::LengthUpTo(double t) const {
                                       [](double value, const Panel& p) { return value < p.begin; });
   const Panel& panel = above == panels_.begin() ? panels_.front() : *(above - 1);
   if (t >= panel.end) return panel.before + panel.length;
-  return panel.before + std::min(IntegrateSpeed(panel.span, panel.begin, t), panel.length);
+  return panel.before + std::min(Length(panel.span, panel.begin, t), panel.length);
 }
 
 void CurvePanels::Evaluate(int span, double t, int k, double* result) const {
@@ -175,7 +184,7 @@ double CurvePanels::Speed(int span, double t) const {
   return std::sqrt(squared);
 }
 
-double CurvePanels::IntegrateSpeed(int span, double begin, double end) const {
+double CurvePanels::Length(int span, double begin, double end) const {
   const double half = 0.5 * (end - begin);
   const double middle = begin + half;
   double sum = 0.0;

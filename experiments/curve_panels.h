@@ -30,22 +30,24 @@ class CurvePanels {
   /// C'(t) as a unit vector. Where C' is no more than rounding, at a cusp, the one just beside t
   /// towards the middle of the panel; false if that is no more either.
   bool Tangent(const Panel& panel, double t, double* result) const;
-  /// An upper bound of |C'| on the span.
-  double TopSpeed(int span) const;
+  /// Length of the curve from begin to end within a panel, by one Gauss rule: to 1e-9 of it, unless
+  /// the panel is too short to be halved.
+  double Length(int span, double begin, double end) const;
 
  private:
   /// P_j of the span, j = 0..p.
   const double* ControlPoint(int span, int j) const;
   bool UnitDerivative(int span, double t, double* result) const;
   double Speed(int span, double t) const;
-  double IntegrateSpeed(int span, double begin, double end) const;
+  /// An upper bound of |C'| on the span.
+  double TopSpeed(int span) const;
   void AddSpan(int span, int num_panels);
   void Split(const Panel& whole);
   bool IsStraight(const Panel& panel) const;
 
   const BsplineCurve& curve_;
   int dimension_;
-  double polygon_length_ = 0.0;  // of the control polygon: no curve is longer
+  double shortest_ = 0.0;  // panels are not halved below it
   std::vector<Panel> panels_;
 };
 

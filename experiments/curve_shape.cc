@@ -65,17 +65,17 @@ void MeasureTurning(const BsplineCurve& curve, const CurvePanels& panels, CurveS
   shape->rotation = turning.rotation();
 }
 
-/// The distance f from the data along a stretch of a curve, whose slope is at most the speed:
-/// between the ends f is at most bound = (f(begin) + f(end) + speed (end - begin)) / 2.
+/// The distance f from the data along a stretch of a curve changes by no more than its length:
+/// between the ends f is at most bound = (f(begin) + f(end) + length) / 2.
 struct DistanceStretch {
   int span = 0;
-  double speed = 0.0;
+  double length = 0.0;
   double begin = 0.0;
   double end = 0.0;
   double at_begin = 0.0;
   double at_end = 0.0;
 
-  double bound() const { return 0.5 * (at_begin + at_end + speed * (end - begin)); }
+  double bound() const { return 0.5 * (at_begin + at_end + length); }
   bool operator<(const DistanceStretch& other) const { return bound() < other.bound(); }
 };
 
@@ -97,7 +97,7 @@ double MaxDistanceToData(const CurvePanels& panels, const Points& data) {
   double last = distance(panels.panels().front().span, panels.panels().front().begin);
   for (const CurvePanels::Panel& panel : panels.panels()) {
     const double next = distance(panel.span, panel.end);
-    stretches.push({panel.span, panels.TopSpeed(panel.span), panel.begin, panel.end, last, next});
+    stretches.push({panel.span, panel.length, panel.begin, panel.end, last, next});
     last = next;
   }
   constexpr double kRelative = 1e-3;
@@ -111,11 +111,13 @@ double MaxDistanceToData(const CurvePanels& panels, const Points& data) {
     if (!(stretch.begin < middle && middle < stretch.end)) continue;
     DistanceStretch half = stretch;
     half.end = middle;
+    half.length = panels.Length(stretch.span, stretch.begin, middle);
     half.at_end = distance(stretch.span, middle);
     stretches.push(half);
     half.begin = middle;
     half.at_begin = half.at_end;
     half.end = stretch.end;
+    half.length = panels.Length(stretch.span, middle, stretch.end);
     half.at_end = stretch.at_end;
     stretches.push(half);
   }

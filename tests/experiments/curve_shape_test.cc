@@ -250,5 +250,43 @@ TEST(CurveShape, FindsTheFarthestPointThatSamplingFinds) {
   }
 }
 
+/// The graph of Chebyshev's T9 on [-1, 1] as one span of floating knots. By its blossom, which of
+/// x^k is the mean product of k of the knots, control points are up to 8e9 away from the curve.
+BsplineCurve ChebyshevGraph() {
+  constexpr int kDegree = 9;
+  std::vector<double> knots;
+  for (int k = -9; k <= 10; ++k) knots.push_back(2 * k - 1);
+  const double coefficients[] = {0, 9, 0, -120, 0, 432, 0, -576, 0, 256};  // of x^k
+  Points control_points(kDegree + 1, 2);
+  for (int j = 0; j <= kDegree; ++j) {
+    double symmetric[kDegree + 1] = {1.0};  // sums of products of k of the knots j + 1 .. j + 9
+    for (int i = j + 1; i <= j + kDegree; ++i) {
+      for (int k = kDegree; k >= 1; --k) symmetric[k] += knots[i] * symmetric[k - 1];
+    }
+    double choose = kDegree;
+    control_points.row(j) << symmetric[1] / choose, 0.0;
+    for (int k = 1; k <= kDegree; ++k) {
+      control_points(j, 1) += coefficients[k] * symmetric[k] / choose;
+      choose = choose * (kDegree - k) / (k + 1);
+    }
+  }
+  std::string error;
+  const auto basis = BsplineBasis::Make(kDegree, false, knots, &error);
+  EXPECT_TRUE(basis.has_value()) << error;
+  return BsplineCurve(*basis, control_points);
+}
+
+TEST(CurveShape, EndsWhereControlPointsAreFarFromTheCurve) {
+  const BsplineCurve curve = ChebyshevGraph();
+  const double far = curve.control_points().cwiseAbs().maxCoeff();
+  EXPECT_GT(far, 1e9);
+  const CurveShape shape = ShapeBeside(curve, Rows({{0, 10}, {0, 11}}));
+  // scipy.integrate.quad of sqrt(1 + T9'(x)^2) between the zeros of T9'. Panels may be as short as
+  // 64 roundings of the control points, and no digit of such a one is sure.
+  EXPECT_NEAR(shape.length, 18.237311384671056, 64 * kEpsilon * far);
+  // In (-1, -1).
+  EXPECT_NEAR(shape.max_distance_to_data, std::sqrt(122.0), 1e-3 * std::sqrt(122.0));
+}
+
 }  // namespace
 }  // namespace batten
