@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "experiments/basins.h"
 #include "experiments/comparison_reference.h"
@@ -17,14 +18,22 @@ constexpr char kCholesky[] = "banded_cholesky";
 /// Times of one solver over the repetitions.
 struct Times {
   std::vector<double> setup;
-  std::vector<double> solve;
   std::vector<double> all;
 
   void Add(const RunResult& run) {
     setup.push_back(run.setup_seconds);
-    solve.push_back(run.seconds - run.setup_seconds);
     all.push_back(run.seconds);
   }
+  /// The repetition of median time, of an even number the faster one in the middle: its set-up and
+  /// solve add up, as medians of their own need not. -1: there is none.
+  int MedianRepetition() const {
+    if (all.empty()) return -1;
+    std::vector<int> order(all.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [this](int a, int b) { return all[a] < all[b]; });
+    return order[(order.size() - 1) / 2];
+  }
+  double MedianSeconds() const { return all.empty() ? NAN : all[MedianRepetition()]; }
 };
 
 /// The comparison on one problem.
@@ -165,10 +174,11 @@ void ProblemComparison::Measure(std::size_t solver) {
   ComparisonRow& row = rows_[solver];
   const Times& times = times_[solver];
   row.repetitions = static_cast<int>(times.all.size());
-  row.setup_seconds = Median(times.setup);
-  row.solve_seconds = Median(times.solve);
-  row.seconds = Median(times.all);
-  row.times_cholesky = row.seconds / Median(cholesky_.all);
+  const int median = times.MedianRepetition();
+  row.seconds = times.MedianSeconds();
+  row.setup_seconds = median < 0 ? NAN : times.setup[median];
+  row.solve_seconds = row.seconds - row.setup_seconds;
+  row.times_cholesky = row.seconds / cholesky_.MedianSeconds();
   MeasureEnd(problem_, direct_, spec_.run, &row);
 }
 

@@ -33,7 +33,7 @@ struct ComparisonRow {
   int problem_index = 0;       // in ComparisonResult::problems
   std::string solver;          // as written, NAME/OPTION=VALUE
   RunResult run;               // of the first repetition: trace and end
-  double setup_seconds = 0.0;  // medians over the repetitions
+  double setup_seconds = 0.0;  // of the repetition with the median time
   double solve_seconds = 0.0;
   double seconds = 0.0;
   int repetitions = 0;          // really made: one where a run is skipped or cut by time

@@ -136,7 +136,9 @@ std::string RowNote(const ComparisonRow& row) {
   std::string text;
   bool tells_rate = false;
   for (const auto& [name, value] : row.run.notes) {
-    text += (text.empty() ? "" : ", ") + name + " " + ShortWords(value);
+    // A warning that turned out true stands in the message, too.
+    const bool comes_again = row.run.outcome.message.find(value) != std::string::npos;
+    if (!comes_again) text += (text.empty() ? "" : ", ") + name + ": " + ShortWords(value);
     tells_rate = tells_rate || name.find("spectral radius") != std::string::npos ||
                  name.find("rate") != std::string::npos;
   }

@@ -250,25 +250,25 @@ std::string ComparisonMarkdown(const ComparisonResult& result) {
 
 std::string ComparisonLatex(const ComparisonResult& result) {
   const Table table = MakeTable(result);
-  std::string text =
-      "% Needs \\usepackage{booktabs}.\n"
+  // A float a problem: one of several pages would not be set.
+  std::string begin =
       "\\begin{table*}\n\\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n"
       "\\begin{tabular}{" +
       std::string(kFirstNumber, 'l') + std::string(table.columns.size() - kFirstNumber, 'r') +
       "}\n\\toprule\n";
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    text += (c > 0 ? " & " : "") + std::string(table.columns[c].latex);
+    begin += (c > 0 ? " & " : "") + std::string(table.columns[c].latex);
   }
-  text += " \\\\\n\\midrule\n";
+  begin += " \\\\\n\\midrule\n";
+  const std::string end = "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
+  std::string text = "% Needs \\usepackage{booktabs}.\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    if (IsFirstOfProblem(result, r)) text += "\\midrule\n";
+    if (r == 0 || IsFirstOfProblem(result, r)) text += (r > 0 ? end : "") + begin;
     text += LatexLine(table.rows[r], table.columns.size());
   }
-  text += "\\bottomrule\n\\end{tabular}\n\n\\smallskip\n";
-  for (const std::string& note : ComparisonNotes(result)) {
-    text += "\\parbox{\\linewidth}{\\raggedright " + LatexText(note) + "}\n\n";
-  }
-  return text + "\\end{table*}\n";
+  text += end + "\n{\\raggedright\\scriptsize\n";
+  for (const std::string& note : ComparisonNotes(result)) text += LatexText(note) + "\\par\n";
+  return text + "}\n";
 }
 
 }  // namespace batten
