@@ -16,10 +16,12 @@ std::atomic<bool> interrupt_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// Geometric mean of the gradient's factor per iteration over the last third of the iterations that
-/// are well above the rounding floor.
+/// are well above the rounding floor. Nothing where the gradient stands still: a method with a
+/// limit other than the minimum comes to it at a rate that |g| does not show.
 double ObservedRate(const RunResult& result) {
   constexpr double kAboveFloor = 100.0;
   constexpr int kFewest = 6;
+  constexpr double kStandsStill = 1e-9;
   int last = -1;
   for (const TraceRow& row : result.trace) {
     if (!(row.gradient_norm > kAboveFloor * result.gradient_floor)) break;
@@ -29,6 +31,7 @@ double ObservedRate(const RunResult& result) {
   const int first = last - last / 3;
   const double ratio = result.trace[static_cast<std::size_t>(last)].gradient_norm /
                        result.trace[static_cast<std::size_t>(first)].gradient_norm;
+  if (std::abs(ratio - 1.0) < kStandsStill) return std::numeric_limits<double>::quiet_NaN();
   return std::pow(ratio, 1.0 / (last - first));
 }
 
