@@ -41,6 +41,7 @@ struct LibraryRun {
   Eigen::VectorXd booked;  // the last iterate
   Eigen::VectorXd point, gradient;
   bool stopped = false;
+  bool is_lost = false;       // the library's next iterate is no number
   std::exception_ptr thrown;  // must not pass through C
 
   template <typename Work>
@@ -80,6 +81,10 @@ int BookIterate(void* instance, const lbfgsfloatval_t* x, const lbfgsfloatval_t*
                 const lbfgsfloatval_t /*gnorm*/, const lbfgsfloatval_t /*step*/, int /*n*/,
                 int /*k*/, int /*ls*/) {
   auto* const run = static_cast<LibraryRun*>(instance);
+  // Where neither x nor g changed any more it divides by 0, and its backtracking by Armijo's rule
+  // takes what comes of that for a step.
+  run->is_lost = !Eigen::Map<const Eigen::VectorXd>(x, run->booked.size()).allFinite();
+  if (run->is_lost) return 1;
   const batten::Status status = run->Guarded([&] {
     run->booked = Eigen::Map<const Eigen::VectorXd>(x, run->booked.size());
     // Anything but kOk: leave now.
@@ -151,7 +156,7 @@ class LibLbfgsSolver final : public batten::Solver {
 
   batten::Outcome DoMinimize(batten::Objective* objective, batten::RunContext* context,
                              Eigen::VectorXd* x) override {
-    LibraryRun run = {objective, context, *x, *x, *x, false, nullptr};
+    LibraryRun run = {objective, context, *x, *x, *x, false, false, nullptr};
     if (context->Iterate(*x) != batten::Status::kOk) return {context->stop_reason(), ""};
     lbfgs_parameter_t parameters = Parameters();
     context->Note("algorithm that ran", "libLBFGS L-BFGS m=" + std::to_string(parameters.m) +
@@ -169,6 +174,10 @@ class LibLbfgsSolver final : public batten::Solver {
     *x = run.booked;
     if (run.thrown != nullptr) std::rethrow_exception(run.thrown);
     if (run.stopped) return {context->stop_reason(), ""};
+    if (run.is_lost) {
+      return {batten::StopReason::kLineSearchEnded,
+              "libLBFGS had no direction from here: s'y is 0"};
+    }
     return OutcomeOf(code);
   }
 
