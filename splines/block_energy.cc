@@ -41,7 +41,7 @@ double EnergyByCoordinate(const RowShape& shape, const RowBlock& block, const do
 }
 
 template <BlockQuantity kQuantity>
-BlockEnergyKernel* Find(const RowShape& shape, bool wide) {
+BlockEnergyKernel* Find(const RowShape& shape, [[maybe_unused]] bool wide) {
   return WithFixedShape(
       shape.width, shape.dimension, [&](auto width, auto dimension) -> BlockEnergyKernel* {
         if constexpr (width < 0) {
