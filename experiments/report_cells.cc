@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 
 namespace batten {
 namespace {
@@ -85,6 +86,19 @@ bool ReadCells(const std::string& path, std::vector<OrderedJson>* cells,
     return true;
   };
   return ReadLines(path, take, error);
+}
+
+std::size_t KeepCells(const OrderedJson& keys, std::vector<OrderedJson>* cells) {
+  std::set<std::string> kept;
+  for (const OrderedJson& key : keys) {
+    if (key.is_string()) kept.insert(key.get<std::string>());
+  }
+  const std::size_t before = cells->size();
+  const auto is_other = [&kept](const OrderedJson& cell) {
+    return kept.count(TextField(cell, "key")) == 0;
+  };
+  cells->erase(std::remove_if(cells->begin(), cells->end(), is_other), cells->end());
+  return before - cells->size();
 }
 
 std::string TextField(const OrderedJson& cell, const char* field) {

@@ -26,6 +26,9 @@ bool ReadLines(const std::string& path,
 bool ReadCells(const std::string& path, std::vector<OrderedJson>* cells,
                std::vector<std::string>* notes, std::string* error);
 
+/// Leaves the rows whose key is among `keys`, an array of texts. Returns how many are gone.
+std::size_t KeepCells(const OrderedJson& keys, std::vector<OrderedJson>* cells);
+
 /// The field as text; "" where it is missing or of another type.
 std::string TextField(const OrderedJson& cell, const char* field);
 /// NaN where it is missing, null or no number.

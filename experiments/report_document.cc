@@ -55,6 +55,7 @@ class FolderReader {
   void FindGroups();
   bool ReadLogs(std::string* error);
   bool ReadManifest(std::string* error);
+  void LeaveOutOtherCells();
   bool ReadBenchNotes(std::string* error);
   bool TracesJson(std::string* json, std::string* error);
 
@@ -172,6 +173,16 @@ bool FolderReader::ReadManifest(std::string* error) {
   return false;
 }
 
+/// What a folder of `bench` has from before its suite, data or program changed is not in its
+/// tables.
+void FolderReader::LeaveOutOtherCells() {
+  if (!manifest_.is_object() || !manifest_.contains("cells")) return;
+  const std::size_t others = KeepCells(manifest_["cells"], &cells_);
+  if (others == 0) return;
+  notes_.push_back("cells.jsonl: rows that are left out, of cells that the suite had before: " +
+                   std::to_string(others));
+}
+
 /// The paragraphs and points of what `bench` says about its results.
 bool FolderReader::ReadBenchNotes(std::string* error) {
   if (!IsBench() || !Has("notes.md")) return true;
@@ -228,8 +239,9 @@ bool FolderReader::TracesJson(std::string* json, std::string* error) {
 bool FolderReader::Read(ReportDocument* document, std::string* error) {
   const bool has_cells = Has("cells.jsonl");
   if (has_cells && !ReadCells(InFolder("cells.jsonl"), &cells_, &notes_, error)) return false;
-  if (!ReadTraces(error) || !ReadLogs(error) || !ReadManifest(error) || !ReadBenchNotes(error))
-    return false;
+  if (!ReadManifest(error)) return false;
+  LeaveOutOtherCells();
+  if (!ReadTraces(error) || !ReadLogs(error) || !ReadBenchNotes(error)) return false;
   ReadBench();
   FindGroups();
   OrderedJson tables, pictures, pages;

@@ -65,6 +65,17 @@ TEST_F(ReportDocumentTest, OfRowsWithOneKeyTheLastCounts) {
   EXPECT_EQ(Summary()["cells"]["rows"], json::parse("[[\"1\", \"newton\"], [\"2\", \"gim\"]]"));
 }
 
+TEST_F(ReportDocumentTest, LeavesOutCellsThatTheSuiteNoLongerHas) {
+  Write("cells.jsonl",
+        "{\"key\": \"a\", \"problem\": \"p\"}\n{\"key\": \"b\", \"problem\": \"p\"}\n"
+        "{\"key\": \"c\", \"problem\": \"p\"}\n");
+  Write("manifest.json", "{\"format\": \"batten.manifest/1\", \"cells\": [\"c\", \"d\", \"a\"]}");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["group_of"].size(), 2u);
+  EXPECT_THAT(Summary()["notes"].dump(),
+              ::testing::HasSubstr("of cells that the suite had before: 1"));
+}
+
 TEST_F(ReportDocumentTest, LeavesOutATornLastLineAndSaysSo) {
   Write("cells.jsonl", "{\"solver\": \"cg\"}\n{\"solver\": \"gi");
   ASSERT_TRUE(Read()) << error_;

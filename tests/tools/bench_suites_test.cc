@@ -100,6 +100,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadSuite{"SolverTwice",
                  [](json* s) { (*s)["solvers"][0] = "lbfgs"; },
                  {"/solvers/2: found lbfgs/memory=10 twice"}},
+        BadSuite{"SeedTwice",
+                 [](json* s) {
+                   (*s)["seeds"] = {{"data", {2, 1, 2}}};
+                 },
+                 {"/seeds/data/2: found 2; allowed: each number once"}},
+        BadSuite{"GapTwice",
+                 [](json* s) {
+                   (*s)["targets"] = {{"gaps", {0.1, 0.1}}};
+                 },
+                 {"/targets/gaps/1: found 0.1; allowed: each number once"}},
         BadSuite{"Term",
                  [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
                  {"/terms/0", "did you mean fairing?"}},
