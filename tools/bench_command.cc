@@ -20,7 +20,7 @@ DEFINE_int32(jobs, 1,
              "Cells at once. With more than one their times disturb each other: they are marked, "
              "and left out of tables and figures of time.");
 DEFINE_string(shard, "1/1",
-              "Of the matrix, part I of N, as I/N: whole problems with all their solvers. The "
+              "Of the matrix, part I of N, as I/N: every N-th instance with all its solvers. The "
               "folders of all parts are put together by batten merge.");
 DECLARE_bool(strict);
 DECLARE_bool(figures);
