@@ -131,14 +131,23 @@ std::string AboveBestKnown(const ComparisonResult& result, std::size_t problem) 
          (excess > 0.0 ? "above" : "below, which is news");
 }
 
+/// Whether a message is the warning, or ends with it behind its own text.
+bool RepeatsWarning(const std::string& message, const std::string& warning) {
+  const std::string behind = "; " + warning;
+  return message == warning ||
+         (message.size() > behind.size() &&
+          message.compare(message.size() - behind.size(), behind.size(), behind) == 0);
+}
+
 /// What the solver had to say, with the observed rate beside a predicted one.
 std::string RowNote(const ComparisonRow& row) {
   std::string text;
   bool tells_rate = false;
   for (const auto& [name, value] : row.run.notes) {
     // A warning that turned out true stands in the message, too.
-    const bool comes_again = row.run.outcome.message.find(value) != std::string::npos;
-    if (!comes_again) text += (text.empty() ? "" : ", ") + name + ": " + ShortWords(value);
+    if (!RepeatsWarning(row.run.outcome.message, value)) {
+      text += (text.empty() ? "" : ", ") + name + ": " + ShortWords(value);
+    }
     tells_rate = tells_rate || name.find("spectral radius") != std::string::npos ||
                  name.find("rate") != std::string::npos;
   }

@@ -266,7 +266,8 @@ std::string ComparisonLatex(const ComparisonResult& result) {
     if (r == 0 || IsFirstOfProblem(result, r)) text += (r > 0 ? end : "") + begin;
     text += LatexLine(table.rows[r], table.columns.size());
   }
-  text += end + "\n{\\raggedright\\scriptsize\n";
+  if (!table.rows.empty()) text += end;
+  text += "\n{\\raggedright\\scriptsize\n";
   for (const std::string& note : ComparisonNotes(result)) text += LatexText(note) + "\\par\n";
   return text + "}\n";
 }

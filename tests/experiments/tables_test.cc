@@ -148,6 +148,20 @@ TEST(ComparisonNotes, PutTheObservedRateBesideTheSpectralRadius) {
               Contains("rhino_|_100%, gim: spectral radius of I - A: 0.667, observed rate 0.666"));
 }
 
+TEST(ComparisonNotes, SayAWarningOnceAndLeaveOutNothingElse) {
+  ComparisonResult result = SomeResult();
+  RunResult& run = result.rows[1].run;
+  run.notes = {{"may not converge", "a radius of 1"}, {"window", "5"}};
+  run.outcome.message = "no iterate came nearer in 15; a radius of 1";
+  EXPECT_THAT(
+      ComparisonNotes(result),
+      Contains("rhino_|_100%, gim: window: 5; no iterate came nearer in 15; a radius of 1"));
+}
+
+TEST(ComparisonLatex, OfNoRowsHasNoTable) {
+  EXPECT_THAT(ComparisonLatex(ComparisonResult()), ::testing::Not(HasSubstr("tabular")));
+}
+
 TEST(ComparisonNotes, StateTheRuleOfTheRuns) {
   ComparisonResult result = SomeResult();
   EXPECT_EQ(ComparisonNotes(result)[0],
