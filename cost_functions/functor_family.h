@@ -35,6 +35,7 @@ struct CompiledSizes<Functor, std::void_t<decltype(Functor::CompiledFor(3, 2))>>
 ///   static constexpr bool kAffine;                 // what TermInfo::affine becomes
 ///   static constexpr int kDerivatives;             // highest derivative of C it asks for
 ///   static constexpr int NumResiduals(int dimension);   // at most 16
+///   static constexpr bool CompiledFor(int degree, int dimension);  // if not for all common sizes
 ///   explicit Functor(const OptionValues& options);
 ///   std::shared_ptr<const Sites> MakeSites(const FitSetting& setting) const;
 ///   template <typename SiteType, typename T>
