@@ -276,7 +276,8 @@ double RunControl::LineSearchFloor(const Eigen::VectorXd& x, double energy,
   if (squared_norm == 0.0) return 0.0;
   if (reporter_.HessianTimes(x, gradient, &product) != Status::kOk) return 0.0;
   const double curvature = gradient.dot(product) / squared_norm;
-  const double noise = Objective::EnergyRoundingFloor(energy, reporter_.ResidualSize(x));
+  // Both ends of the step carry the rounding, and the best step falls by |g|^2 / (2 curvature).
+  const double noise = 2.0 * Objective::EnergyRoundingFloor(energy, reporter_.ResidualSize(x));
   return curvature > 0.0 ? std::sqrt(2.0 * curvature * noise) : 0.0;
 }
 

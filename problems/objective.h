@@ -78,8 +78,9 @@ class Objective {
   /// What residuals near x are differences of: the norm of |r(0)| + |r(x) - r(0)|, for r = A P - Q
   /// that of |Q| + |A P|. If r has no value at 0, the norm of r(x).
   double ResidualSize(const Eigen::VectorXd& x) const;
-  /// Size below which differences of E = ||r||^2 are noise: each residual carries a few roundings
-  /// of what it is a difference of, so that E carries 4 eps (2 sqrt(E) ResidualSize + E).
+  /// Size of the rounding of E = ||r||^2: each residual carries a few roundings of what it is a
+  /// difference of, so that E carries 4 eps (2 sqrt(E) ResidualSize + E), and a difference of two
+  /// values at most twice as much.
   static double EnergyRoundingFloor(double energy, double residual_size);
   std::vector<double> TermEnergies(const Eigen::VectorXd& x) const;
 
