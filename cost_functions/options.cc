@@ -310,4 +310,8 @@ std::string Quoted(std::string_view text, std::size_t longest) {
   return quoted + (text.size() > longest ? "...\"" : "\"");
 }
 
+bool EndsWith(std::string_view text, std::string_view ending) {
+  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
+}
+
 }  // namespace batten

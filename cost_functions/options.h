@@ -80,6 +80,7 @@ std::string UnknownNameMessage(const std::string& kind, const std::string& name,
 /// `text` in double quotes, on one line and in ASCII whatever it is: other bytes as \xNN, at most
 /// `longest` of them.
 std::string Quoted(std::string_view text, std::size_t longest);
+bool EndsWith(std::string_view text, std::string_view ending);
 /// Shortest text that reads back to the same double; "inf", "-inf", "nan".
 std::string NumberText(double value);
 /// Whole-text parse; false for anything else than one finite number.

@@ -9,6 +9,7 @@
 #include "experiments/comparison_records.h"
 #include "experiments/content_hash.h"
 #include "experiments/identity_card.h"
+#include "experiments/machine_speed.h"
 #include "experiments/plugin_faults.h"
 #include "experiments/sparse_run.h"
 
@@ -245,6 +246,7 @@ std::string MeasureInstance(const BenchSuite& suite, const BenchCell& cell) {
   json["num_variables"] = Objective(problem.get(), nullptr).num_variables();
   json["num_points"] = problem->curve_fit()->parameters().size();
   json["evaluation_seconds"] = EvaluationSeconds(*problem, suite.run.compile);
+  json["reference_seconds"] = ReferenceSeconds();
   json["minimum_energy"] = direct.minimum_energy();
   json["truth_energy"] = TruthEnergy(bench, cell, *problem);
   const CurveFit& fit = *problem->curve_fit();

@@ -58,7 +58,12 @@ std::vector<std::string> Complaints(const nlohmann::json& row) {
     complaints.push_back("ignores stop: " + NumberText(NumberAt(row, "calls_past_stop")) +
                          " calls after it was told");
   }
-  if (Has("no_finite_end")) complaints.push_back("its end is no finite number: " + stop);
+  if (Has("no_finite_end")) {
+    complaints.push_back("its end is no finite number: " + stop);
+  } else if (stop == "numerical_failure" || stop == "diverged" || stop == "infeasible") {
+    const std::string message = TextAt(row, "message");
+    complaints.push_back(stop + (message.empty() ? "" : ": " + message));
+  }
   return complaints;
 }
 

@@ -75,7 +75,9 @@ class Collector {
     const auto found = data_.instances.find(TextAt(row, "instance"));
     const nlohmann::json measured = found == data_.instances.end() ? nullptr : found->second;
     instance.num_variables = NumberAt(measured, "num_variables");
-    instance.unit_seconds = IsMeasured(measured) ? NumberAt(measured, "evaluation_seconds") : NAN;
+    const bool is_measured = IsMeasured(measured);
+    instance.unit_seconds = is_measured ? NumberAt(measured, "evaluation_seconds") : NAN;
+    instance.reference_seconds = is_measured ? NumberAt(measured, "reference_seconds") : NAN;
     instance.minimum_energy = NumberAt(measured, "minimum_energy");
     instance.truth_energy = NumberAt(measured, "truth_energy");
     // A truth without noise is a minimum, not a floor.

@@ -29,7 +29,8 @@ struct BenchInstance {
   std::string terms;
   std::string kind;  ///< Of its parameters: "fixed", "free", "projected".
   double num_variables = 0.0;
-  double unit_seconds = 0.0;  // NaN: not known
+  double unit_seconds = 0.0;       // NaN: not known
+  double reference_seconds = 0.0;  // what ReferenceSeconds() gave beside; NaN: not known
   double start_energy = 0.0;
   double minimum_energy = 0.0;         // E*: the direct answer, or the best basin's
   bool has_basins = false;             // no direct answer

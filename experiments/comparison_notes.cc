@@ -133,10 +133,7 @@ std::string AboveBestKnown(const ComparisonResult& result, std::size_t problem) 
 
 /// Whether a message is the warning, or ends with it behind its own text.
 bool RepeatsWarning(const std::string& message, const std::string& warning) {
-  const std::string behind = "; " + warning;
-  return message == warning ||
-         (message.size() > behind.size() &&
-          message.compare(message.size() - behind.size(), behind.size(), behind) == 0);
+  return message == warning || EndsWith(message, "; " + warning);
 }
 
 /// What the solver had to say, with the observed rate beside a predicted one.

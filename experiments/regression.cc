@@ -85,6 +85,7 @@ class Finder {
       }
     }
     std::sort(targets_.begin(), targets_.end());  // the strictest first
+    CompareMachines(before, now);
     const auto old_runs = ByName(before);
     const auto new_runs = ByName(now);
     int only_before = 0, only_now = static_cast<int>(new_runs.size());
@@ -178,6 +179,30 @@ class Finder {
     return text;
   }
 
+  /// The same program in two sessions of one machine may need other times: what moves them alike is
+  /// taken out.
+  void CompareMachines(const BenchResults& before, const BenchResults& now) {
+    const auto Reference = [](const BenchResults& results) {
+      std::vector<double> seconds;
+      for (const BenchInstance& instance : results.instances) {
+        if (std::isfinite(instance.reference_seconds)) {
+          seconds.push_back(instance.reference_seconds);
+        }
+      }
+      return seconds.empty() ? std::nan("") : Median(seconds);
+    };
+    const double ratio = Reference(now) / Reference(before);
+    if (!(ratio > 0.0 && std::isfinite(ratio))) {
+      report_->differences.push_back(
+          "the machine's speed is not known of both: seconds are compared as they are");
+      return;
+    }
+    machine_ratio_ = ratio;
+    report_->differences.push_back("the machine: a fixed piece of arithmetic takes " +
+                                   ShortNumber(ratio, 3) +
+                                   " times the seconds now, by which seconds are divided");
+  }
+
   /// It came to the limit of time from half of it or more: no more than the machine's mood.
   static bool IsCloseToTheLimit(const Pair& pair) {
     constexpr double kMood = 2.0;
@@ -228,7 +253,7 @@ class Finder {
   double CostRatio(const Pair& pair, CostMeasure measure) const {
     const bool of_time = measure == CostMeasure::kSeconds;
     if (Reached(*pair.before) && Reached(*pair.now)) {
-      return of_time ? Median(pair.now->seconds) / Median(pair.before->seconds)
+      return of_time ? Median(pair.now->seconds) / Median(pair.before->seconds) / machine_ratio_
                      : Evaluations(*pair.now) / Evaluations(*pair.before);
     }
     const auto place =
@@ -236,7 +261,9 @@ class Finder {
     for (const auto& [gap, t] : targets_) {
       const double before = pair.before->to_own_target[t][place];
       const double now = pair.now->to_own_target[t][place];
-      if (std::isfinite(before) && std::isfinite(now)) return now / before;
+      if (std::isfinite(before) && std::isfinite(now)) {
+        return now / before / (of_time ? machine_ratio_ : 1.0);
+      }
     }
     return std::nan("");
   }
@@ -245,6 +272,7 @@ class Finder {
   RegressionReport* report_;
   std::map<RunKey, Pair> pairs_;
   std::vector<std::pair<double, std::size_t>> targets_;  // gap and place
+  double machine_ratio_ = 1.0;  // seconds of the same work, now over before
 };
 
 void CompareBuilds(const BenchData& before, const BenchData& now, RegressionReport* report) {

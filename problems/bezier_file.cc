@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "cost_functions/options.h"
 #include "problems/data_set.h"
 #include "problems/strict_json.h"
 #include "splines/bezier_measures.h"
@@ -14,11 +15,6 @@ namespace batten {
 namespace {
 
 using Json = nlohmann::json;
-
-bool EndsWith(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
 
 /// The key `control_points` of an object; refuses the first row that is not like the others.
 bool ControlPoints(const StrictObject& object, const Json& json, Points* points) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cost_functions/options.h"
 #include "experiments/atomic_file.h"
 #include "experiments/conformance.h"
 #include "solvers/plugin_loader.h"
@@ -41,16 +42,11 @@ struct NamedCheck {
   ConformanceCheck check;
 };
 
-bool HasEnding(const std::string& text, const std::string& ending) {
-  return text.size() > ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 std::string BadgePath(const std::string& plugin) {
   if (!FLAGS_badge.empty()) return FLAGS_badge;
   const std::string ending = ".so";
   const std::string stem =
-      HasEnding(plugin, ending) ? plugin.substr(0, plugin.size() - ending.size()) : plugin;
+      EndsWith(plugin, ending) ? plugin.substr(0, plugin.size() - ending.size()) : plugin;
   return stem + ".badge.svg";
 }
 
@@ -165,7 +161,7 @@ bool RunChecks(const LoadedPlugin& plugin, std::vector<CheckRow>* rows) {
 
 bool CheckBadge(const std::string& plugin, std::string* error) {
   const std::string path = BadgePath(plugin);
-  if (WasGiven("badge") && !HasEnding(path, ".svg") && !HasEnding(path, ".json")) {
+  if (WasGiven("badge") && !EndsWith(path, ".svg") && !EndsWith(path, ".json")) {
     *error = RefusedFlag("badge", path, kAllowedBadge);
     return false;
   }
@@ -194,7 +190,7 @@ int RunCheck(const std::vector<std::string>& positional, CommandOutput* output) 
   const std::string badge = BadgePath(path);
   const std::string label = "batten API " + std::to_string(BATTEN_API_LEVEL);
   const std::string contents =
-      HasEnding(badge, ".json") ? BadgeJson(label, sum, all) : BadgeSvg(label, sum, all);
+      EndsWith(badge, ".json") ? BadgeJson(label, sum, all) : BadgeSvg(label, sum, all);
   if (!WriteFileAtomically(badge, contents, &output->error)) return kBadInput;
   return all ? kDone : kDisagreement;
 }

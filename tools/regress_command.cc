@@ -69,7 +69,8 @@ Command RegressCommand() {
       "Compares two folders of batten bench, run by run. Worse is: a run that reached what was "
       "asked and no longer does, an end of higher energy, and more evaluations or seconds of one "
       "solver or of all, by Wilcoxon's signed-rank test of the paired ratios. Times are compared "
-      "of cells that did not overlap; take both from one quiet machine.",
+      "of cells that did not overlap, and divided by how much longer a fixed piece of arithmetic "
+      "took; take both from one quiet machine.",
       "Exit status 4: it got worse."};
   command.examples = {"batten regress out/before out/now",
                       "batten regress out/before out/now --slowdown=0.2"};

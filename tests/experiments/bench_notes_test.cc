@@ -1,4 +1,4 @@
-// Solvers that are one method, in results written down by hand.
+// Solvers that are one method, and runs that failed, in results written down by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,6 +54,18 @@ TEST(Twins, AreNotWhatEndsByItselfBeforeTheOther) {
   EXPECT_THAT(NotesOn({"gradient_small", 9, "end", {"a4", "a8"}},
                       {"time_limit", 30, "cut", {"a4", "a8", "a16"}}),
               Not(kOneMethod));
+}
+
+TEST(Notes, NameRunsThatFailedWithTheirReason) {
+  for (const char* stop : {"numerical_failure", "diverged", "infeasible"}) {
+    HandMadeBench bench({0.1});
+    bench.AddInstance("p", 1.0);
+    nlohmann::json& row = bench.AddRun("p", "one", {{1, 0.1, 9.0}, {9, 0.2, 1.0}});
+    row["stop"] = stop;
+    row["message"] = "it went wrong";
+    EXPECT_THAT(bench.Results().notes,
+                Contains(HasSubstr("one: " + std::string(stop) + ": it went wrong")));
+  }
 }
 
 }  // namespace

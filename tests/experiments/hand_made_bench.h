@@ -28,11 +28,9 @@ class HandMadeBench {
   /// With a direct answer, unless `minimum` is null.
   nlohmann::json& AddInstance(const std::string& problem, const nlohmann::json& minimum) {
     nlohmann::json& instance = data_.instances["instance " + problem];
-    instance = {{"num_variables", 4},
-                {"evaluation_seconds", 0.1},
-                {"minimum_energy", minimum},
-                {"truth_energy", nullptr},
-                {"noise", 0.0}};
+    instance = {{"num_variables", 4},        {"evaluation_seconds", 0.1},
+                {"reference_seconds", 2e-4}, {"minimum_energy", minimum},
+                {"truth_energy", nullptr},   {"noise", 0.0}};
     return instance;
   }
 
