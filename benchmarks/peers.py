@@ -6,6 +6,7 @@ measured and why it is fair.
 
 import argparse
 import dataclasses
+import datetime
 import json
 import os
 import statistics
@@ -202,10 +203,19 @@ def machine():
     return [f'Processor: {model}', '', f'Packages: {asked.stdout.rstrip(", ")}']
 
 
+def version():
+    """The commit that the tree is of, where git knows it, and today's date."""
+    folder = os.path.dirname(os.path.abspath(__file__))
+    asked = subprocess.run(['git', '-C', folder, 'describe', '--always', '--dirty', '--abbrev=12'],
+                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    commit = asked.stdout.strip() if asked.returncode == 0 else 'unknown'
+    return f'Commit {commit}, {datetime.date.today().isoformat()}'
+
+
 def render(measured, options):
     lines = ['# Benchmark results', '',
              'Written by `benchmarks/run.sh`; `docs/benchmarks.md` says what the rows mean.', '',
-             *machine(), '',
+             version(), '', *machine(), '',
              f'Medians; rounds: {len(measured.generic)}. Cubic, 2-D, 1e6 points, 1e4 control '
              'points unless a row says otherwise. One thread and CPU time, or two threads and time '
              'on the wall where a row says so.', '']

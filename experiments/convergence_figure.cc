@@ -123,14 +123,16 @@ std::string IterationAxis(int most_iterations) {
   if (most_iterations <= kMostLinear) {
     constexpr int kSpacing = 40;  // pixels
     const double step = TickStep(most_iterations, kMiddle - kLeft, kSpacing);
-    return "set xtics " + NumberText(std::max(1.0, step)) + "\n";
+    return "set xlabel 'iteration'\nset xtics " + NumberText(std::max(1.0, step)) + "\n";
   }
   std::string ticks = "0, 1, 3";
   for (int tick = 10; tick <= most_iterations; tick *= 10) {
     ticks += ", " + std::to_string(tick);
     if (3 * tick <= most_iterations) ticks += ", " + std::to_string(3 * tick);
   }
-  return "set nonlinear x via log10(1 + x) inverse 10**x - 1\nset xtics (" + ticks + ")\n";
+  return "set xlabel 'iteration k, scaled as log(1 + k)'\n"
+         "set nonlinear x via log10(1 + x) inverse 10**x - 1\nset xtics (" +
+         ticks + ")\n";
 }
 
 /// Two panels, and the legend as a plot of nothing over the whole height beside them: only there
@@ -183,7 +185,7 @@ std::string Commands(const std::vector<const ComparisonRow*>& rows, int width, i
   return "set multiplot\nunset key\n"
          "set border 3 linewidth 0.8\nset tics nomirror out scale 0.6\n"
          "set grid ytics linewidth 0.5 linecolor rgb '#dddddd'\n"
-         "set logscale y\nset format y '10^{%T}'\nset xlabel 'iteration'\n" +
+         "set logscale y\nset format y '10^{%T}'\n" +
          IterationAxis(most_iterations) + "set xrange [0:" + std::to_string(most_iterations) +
          "]\n" +
          canvas.Panel(kLeft, kMiddle, excess ? "E - E*" : "E",
