@@ -85,6 +85,11 @@ class BlockFamily {
   /// curve to the end if E draws them back, else a hair past it.
   virtual void Seat(Eigen::VectorXd* /*x*/) const {}
   virtual bool seats() const { return false; }  ///< Whether Seat does anything.
+  /// Turns a direction from a seated x so that parameters which the gradient there keeps at one
+  /// place (in order, at an end of an open curve) stay together: the slope of E along it is
+  /// gradient . direction then. All three are of all variables.
+  virtual void KeepTogether(const Eigen::VectorXd& /*x*/, const Eigen::VectorXd& /*gradient*/,
+                            Eigen::VectorXd* /*direction*/) const {}
 
   /// Ceres' cost function of one block, its parameter blocks in the order of Bind at the same x,
   /// for as long as a variable with a Window stays there; the loss and weight are to be given to

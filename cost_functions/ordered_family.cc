@@ -20,8 +20,16 @@ Eigen::VectorXd OrderedFamily::Ordered(const Eigen::VectorXd& x,
 }
 
 void OrderedFamily::Seat(Eigen::VectorXd* x) const {
-  // Not the inner family's seats at the ends, which are a hair apart and in no order.
+  // Not the inner family's seats past the ends, which are in no order: here what is at an end does
+  // not count in the gradient unless E falls inwards.
   if (x->allFinite()) *x = Ordered(*x, Order(*x));
+}
+
+void OrderedFamily::KeepTogether(const Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
+                                 Eigen::VectorXd* direction) const {
+  if (!x.allFinite()) return;
+  direction->segment(begin_, count_) =
+      Order(x).KeptTogether(gradient.segment(begin_, count_), direction->segment(begin_, count_));
 }
 
 bool OrderedFamily::DoEvaluate(const Eigen::VectorXd& x, int begin, int end, double* energy,

@@ -14,9 +14,9 @@ namespace batten {
 /// A family with free parameters whose order is kept: its parameters are the ordered ones nearest
 /// to the variables, E(P, t(s)). Points that would pass each other thus share one t. Its gradient
 /// is less the steepest descent from s = t, where E(P, t(s)) has a kink: 0 at minima over ordered t
-/// only. Elsewhere (s where t(s) pools points) no step is felt that does not move their mean: Seat
-/// puts s there. The Jacobian is that by t, the Hessian that of points that stay together. Ends
-/// that are held are those of the domain, where others stop anyway.
+/// only. Elsewhere (s where t(s) pools points, or past an end of an open curve) no step is felt
+/// that does not move their mean: Seat puts s there. The Jacobian is that by t, the Hessian that of
+/// points that stay together. Ends that are held are those of the domain, where others stop anyway.
 class OrderedFamily final : public BlockFamily {
  public:
   OrderedFamily(const FitSetting& setting, std::unique_ptr<BlockFamily> inner,
@@ -25,13 +25,15 @@ class OrderedFamily final : public BlockFamily {
         inner_(std::move(inner)),
         begin_(setting.parameter_offset + (setting.ends_held ? 1 : 0)),
         count_(inner_->size() - (setting.ends_held ? 2 : 0)),
-        period_(setting.basis->periodic() ? setting.basis->domain_length() : 0.0) {}
+        basis_(setting.basis) {}
 
   int size() const override { return inner_->size(); }
   int num_residuals() const override { return inner_->num_residuals(); }
   bool keeps_order() const override { return true; }
   bool seats() const override { return true; }
   void Seat(Eigen::VectorXd* x) const override;
+  void KeepTogether(const Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
+                    Eigen::VectorXd* direction) const override;
   /// These two are as if the order did not matter: for those who ask keeps_order() first.
   void Bind(const Eigen::VectorXd& x, int block, std::vector<int>* offsets,
             std::vector<int>* sizes) const override;
@@ -40,7 +42,7 @@ class OrderedFamily final : public BlockFamily {
 
  private:
   OrderedParameters Order(const Eigen::VectorXd& x) const {
-    return OrderedParameters(x.segment(begin_, count_), period_);
+    return OrderOnCurve(*basis_, x.segment(begin_, count_));
   }
   Eigen::VectorXd Ordered(const Eigen::VectorXd& x, const OrderedParameters& order) const;
 
@@ -55,7 +57,7 @@ class OrderedFamily final : public BlockFamily {
   std::unique_ptr<BlockFamily> inner_;
   int begin_;  // of the parameters that may move
   int count_;
-  double period_;
+  const BsplineBasis* basis_;
 };
 
 }  // namespace batten

@@ -74,17 +74,48 @@ int PoolAcrossSeam(double period, std::vector<Block>* blocks) {
   return num_cut;
 }
 
+void SetBlocks(const std::vector<Block>& blocks, Eigen::Index count, OrderedParameters* order) {
+  order->t.resize(count);
+  for (const Block& block : blocks) {
+    order->block_begins.push_back(block.begin);
+    order->t.segment(block.begin, block.size).setConstant(block.mean);
+  }
+  order->block_begins.push_back(static_cast<int>(count));
+}
+
+/// Means over runs of equal entries of `ascent`; with `stays` 0 over those of zeros.
+Eigen::VectorXd MeansOverRuns(const Eigen::VectorXd& ascent, Eigen::VectorXd d, bool stays) {
+  for (Eigen::Index begin = 0, end = 0; begin < d.size(); begin = end) {
+    while (end < d.size() && ascent[end] == ascent[begin]) ++end;
+    auto run = d.segment(begin, end - begin);
+    run.setConstant(stays && ascent[begin] == 0.0 ? 0.0 : run.mean());
+  }
+  return d;
+}
+
 }  // namespace
 
 OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double period) {
   std::vector<Block> blocks = PoolViolators(s);
   if (period > 0.0 && !blocks.empty()) num_cut = PoolAcrossSeam(period, &blocks);
-  t.resize(s.size());
-  for (const Block& block : blocks) {
-    block_begins.push_back(block.begin);
-    t.segment(block.begin, block.size).setConstant(block.mean);
+  SetBlocks(blocks, s.size(), this);
+}
+
+OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double low,
+                                     double high) {
+  std::vector<Block> blocks;
+  for (Block block : PoolViolators(s)) {
+    block.mean = std::min(std::max(block.mean, low), high);
+    const bool is_at_end = block.mean == low || block.mean == high;
+    if (is_at_end && !blocks.empty() && blocks.back().mean == block.mean) {
+      blocks.back().size += block.size;
+    } else {
+      blocks.push_back(block);
+    }
   }
-  block_begins.push_back(static_cast<int>(s.size()));
+  first_at_end = !blocks.empty() && blocks.front().mean == low;
+  last_at_end = !blocks.empty() && blocks.back().mean == high;
+  SetBlocks(blocks, s.size(), this);
 }
 
 std::vector<int> OrderedParameters::BlockOf() const {
@@ -103,12 +134,37 @@ Eigen::VectorXd OrderedParameters::Apply(const Eigen::Ref<const Eigen::VectorXd>
     const int size = block_begins[b + 1] - block_begins[b];
     dt.segment(block_begins[b], size).setConstant(ds.segment(block_begins[b], size).mean());
   }
+  if (first_at_end) dt.head(block_begins[1]).setZero();
+  if (last_at_end) dt.tail(dt.size() - block_begins[block_begins.size() - 2]).setZero();
   if (num_cut == 0) return dt;
   const int first = block_begins[1];
   const double mean = (ds.head(first).sum() + ds.tail(num_cut).sum()) / (first + num_cut);
   dt.head(first).setConstant(mean);
   dt.tail(num_cut).setConstant(mean);
   return dt;
+}
+
+Eigen::VectorXd OrderedParameters::KeptTogether(const Eigen::Ref<const Eigen::VectorXd>& ascent,
+                                                const Eigen::Ref<const Eigen::VectorXd>& d) const {
+  Eigen::VectorXd kept = d;
+  const std::size_t num_blocks = block_begins.size() - 1;
+  for (std::size_t b = 0; b < num_blocks; ++b) {
+    const int begin = block_begins[b];
+    const auto end = std::min<Eigen::Index>(block_begins[b + 1], t.size() - num_cut);
+    if (begin >= end) continue;
+    const bool at_end = (first_at_end && b == 0) || (last_at_end && b + 1 == num_blocks);
+    kept.segment(begin, end - begin) =
+        MeansOverRuns(ascent.segment(begin, end - begin), d.segment(begin, end - begin), at_end);
+  }
+  if (num_cut == 0) return kept;
+  const auto first = std::min<Eigen::Index>(block_begins[1], t.size() - num_cut);
+  Eigen::VectorXd ascent_around(num_cut + first), around(num_cut + first);
+  ascent_around << ascent.tail(num_cut), ascent.head(first);
+  around << d.tail(num_cut), d.head(first);
+  around = MeansOverRuns(ascent_around, around, false);
+  kept.tail(num_cut) = around.head(num_cut);
+  kept.head(first) = around.tail(first);
+  return kept;
 }
 
 Eigen::VectorXd OrderedParameters::SteepestAscent(
@@ -121,6 +177,14 @@ Eigen::VectorXd OrderedParameters::SteepestAscent(
     const int begin = block_begins[b];
     const auto end = std::min<Eigen::Index>(block_begins[b + 1], t.size() - num_cut);
     if (begin < end) ascent.segment(begin, end - begin) = regress(g.segment(begin, end - begin));
+  }
+  if (first_at_end) {
+    auto first = ascent.head(block_begins[1]);
+    first = first.cwiseMin(0.0);
+  }
+  if (last_at_end) {
+    auto last = ascent.tail(ascent.size() - block_begins[block_begins.size() - 2]);
+    last = last.cwiseMax(0.0);
   }
   if (num_cut == 0) return ascent;
   // A period on, the last points and the first block are neighbours at one place, in this order.

@@ -126,6 +126,9 @@ void AddParameter(const AuditedFit& fit, int i, const Residual& residual, AuditC
         (std::abs(derivative) * residual.size[c] + std::abs(residual.value[c]) * derivative_size);
   }
   sums->squared_slope_rounding += rounding * rounding;
+  const double t = fit.parameters[i];
+  const bool at_begin = !fit.periodic && t <= curve->domain_begin();
+  const bool at_end = !fit.periodic && t >= curve->domain_end();
   if (state == ParameterState::kMoves) {
     if (fit.parameter_blocks.empty()) {
       sums->squared_slope += slope * slope;
@@ -134,22 +137,20 @@ void AddParameter(const AuditedFit& fit, int i, const Residual& residual, AuditC
       const auto place = static_cast<std::size_t>(i);
       sums->goes_around = sums->goes_around || (i > 0 && fit.parameter_blocks[place] == 0 &&
                                                 fit.parameter_blocks[place - 1] != 0);
-      (sums->goes_around ? sums->around
-                         : sums->slopes[static_cast<std::size_t>(fit.parameter_blocks[i])])
-          .push_back(slope);
+      const auto block = static_cast<std::size_t>(fit.parameter_blocks[place]);
+      (sums->goes_around ? sums->around : sums->slopes[block]).push_back(slope);
+      if (at_begin || at_end) sums->inward[block] = at_begin ? 1 : -1;
     }
     return;
   }
-  const double t = fit.parameters[i];
-  const bool at_begin = t <= curve->domain_begin();
-  CHECK(!fit.periodic && (at_begin || t >= curve->domain_end())) << "t is inside the domain";
+  CHECK(at_begin || at_end) << "t is inside the domain";
   if (at_begin ? slope < 0 : slope > 0) sums->squared_pull += slope * slope;
 }
 
 /// Squared length of the steepest descent of points that share one parameter and may part in their
 /// order only: of the isotonic regression of -slopes, the slopes of the greatest convex function
-/// below their sums.
-Real SquaredSlopeInOrder(const std::vector<Real>& slopes) {
+/// below their sums. Where `inward` is not 0, of those of this sign only: there the curve ends.
+Real SquaredSlopeInOrder(const std::vector<Real>& slopes, int inward) {
   const std::size_t n = slopes.size();
   std::vector<Real> sums(n + 1, 0);
   for (std::size_t i = 0; i < n; ++i) sums[i + 1] = sums[i] - slopes[i];
@@ -167,6 +168,7 @@ Real SquaredSlopeInOrder(const std::vector<Real>& slopes) {
   Real squared = 0;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
     const Real slope = rise(corners[k], corners[k + 1]);
+    if (static_cast<Real>(inward) * slope < 0) continue;
     squared += slope * slope * static_cast<Real>(corners[k + 1] - corners[k]);
   }
   return squared;
@@ -176,8 +178,9 @@ void AddBlocks(Sums* sums, AuditReport* report) {
   if (sums->slopes.empty()) return;
   // A period on, the last points come before those of the first block.
   sums->slopes[0].insert(sums->slopes[0].begin(), sums->around.begin(), sums->around.end());
-  for (const std::vector<Real>& slopes : sums->slopes) {
-    sums->squared_slope += SquaredSlopeInOrder(slopes);
+  for (std::size_t b = 0; b < sums->slopes.size(); ++b) {
+    const std::vector<Real>& slopes = sums->slopes[b];
+    sums->squared_slope += SquaredSlopeInOrder(slopes, sums->inward[b]);
     if (slopes.size() > 1) report->num_sharing += static_cast<int>(slopes.size());
   }
 }
@@ -196,7 +199,10 @@ AuditReport Audit(const AuditedFit& fit) {
   sums.gradient.assign(fit.control_points.size(), 0);
   sums.rounding.assign(fit.control_points.size(), 0);
   sums.num_summands.assign(curve.num_control_points(), 0);
-  if (!fit.parameter_blocks.empty()) sums.slopes.resize(fit.parameter_blocks.size());
+  if (!fit.parameter_blocks.empty()) {
+    sums.slopes.resize(fit.parameter_blocks.size());
+    sums.inward.resize(fit.parameter_blocks.size());
+  }
   MeasureExtent(fit, &sums);
   for (int i = 0; i < m; ++i) {
     curve.MoveTo(fit.parameters[i]);

@@ -31,6 +31,7 @@ struct AuditSums {
   std::vector<Real> around;         // of the last points, in one with the first a period on
   bool goes_around = false;
   std::vector<std::vector<Real>> slopes;  // of each block of points that share one
+  std::vector<int> inward;  // of each block: the sign of moves that stay on the curve; 0: both
   // Of the points that count, per coordinate: the run rounds in coordinates from their centre, in
   // which points near the user's origin may be far out.
   Real extent[kMostCoordinates] = {};

@@ -41,8 +41,7 @@ const char* DistanceTermOf(ParameterKind kind) {
 
 OrderedParameters CurveFit::Order(const Eigen::VectorXd& t) const {
   const int held = setting_.ends_held ? 1 : 0;
-  return OrderedParameters(t.segment(held, t.size() - 2 * held),
-                           spec_.closed ? basis_->domain_length() : 0.0);
+  return OrderOnCurve(*basis_, t.segment(held, t.size() - 2 * held));
 }
 
 Eigen::VectorXd CurveFit::OrderedIfKept(Eigen::VectorXd t) const {

@@ -49,6 +49,21 @@ bool Objective::Seat(Eigen::VectorXd* x) const {
   return moves;
 }
 
+void Objective::Aim(const Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
+                    Eigen::VectorXd* direction) const {
+  if (!seats_) return;
+  const LinearElimination& elimination = problem_->elimination();
+  Eigen::VectorXd all = elimination.Expand(x);
+  const Eigen::VectorXd slopes = elimination.ExpandDirection(gradient);
+  Eigen::VectorXd moves = elimination.ExpandDirection(*direction);
+  for (const Problem::TermInstance& term : problem_->terms()) {
+    term.family->KeepTogether(all, slopes, &moves);
+  }
+  all += moves;
+  for (const Problem::TermInstance& term : problem_->terms()) term.family->Seat(&all);
+  *direction = elimination.FreeVariables(all) - x;
+}
+
 Eigen::VectorXd Objective::start() const {
   return problem_->elimination().FreeVariables(problem_->start());
 }

@@ -60,6 +60,11 @@ class Objective {
   /// Moves x, at equal E, to where the gradient is 0 at minima over parameters in order and in the
   /// domain only: BlockFamily::Seat. False if x is there.
   bool Seat(Eigen::VectorXd* x) const;
+  /// Turns a direction from x, which is seated and where E has this gradient, to where a step may
+  /// lead: no parameters pass each other or an end before its end, none part that the gradient
+  /// keeps together, and the slope of E along it is gradient . direction.
+  void Aim(const Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
+           Eigen::VectorXd* direction) const;
 
   /// Counts an evaluation at x that a library does itself, from problem().terms(). False: it must
   /// not be done, as after kStop.

@@ -127,14 +127,9 @@ LineSearchEnd LbfgsSolver::Search(const Eigen::VectorXd& x, double slope, LinePo
   return end;
 }
 
-/// The slope along the direction, which is first turned to where a step may lead: between x and the
-/// point that goes with its end no parameters pass each other or an end, and E has no kink.
+/// The slope along the direction, which is first turned to where a step may lead.
 double LbfgsSolver::AimAlong(const Eigen::VectorXd& x) {
-  if (objective()->seats()) {
-    direction_ += x;
-    objective()->Seat(&direction_);
-    direction_ -= x;
-  }
+  objective()->Aim(x, gradient_, &direction_);
   return gradient_.dot(direction_);
 }
 

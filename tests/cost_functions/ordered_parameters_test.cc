@@ -69,6 +69,43 @@ TEST(OrderedParameters, AreTheNearestOrderedOnes) {
   }
 }
 
+TEST(OrderedParameters, StayBetweenTheEndsOfAnOpenCurve) {
+  const OrderedParameters order(Vector({-0.3, 0.1, -0.4, 0.5, 1.5, 0.9, 1.2}), 0.0, 1.0);
+  // 0.1 and -0.4 pool to -0.15; 1.5, 0.9 and 1.2 to 1.2.
+  EXPECT_EQ(order.t, Vector({0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0}));
+  EXPECT_EQ(order.block_begins, (std::vector<int>{0, 3, 4, 7}));
+  EXPECT_TRUE(order.first_at_end && order.last_at_end);
+  EXPECT_EQ(OrderedParameters(order.t, 0.0, 1.0).t, order.t);
+  EXPECT_EQ(order.Apply(Vector({1, 2, 3, 4, 5, 6, 7})), Vector({0, 0, 0, 4, 0, 0, 0}));
+
+  std::mt19937 random(75);
+  for (int size = 1; size <= 12; ++size) {
+    const Eigen::VectorXd s = RandomVector(size, &random);
+    const Eigen::VectorXd nearest = MinMax(s).cwiseMax(-0.5).cwiseMin(0.5);
+    EXPECT_LT((OrderedParameters(s, -0.5, 0.5).t - nearest).norm(), 64 * kEpsilon);
+  }
+}
+
+TEST(OrderedParameters, GoInwardsOnlyFromTheEndsOfAnOpenCurve) {
+  const OrderedParameters order(Vector({-1.0, 0.0, 0.0, 0.5, 1.0, 2.0}), 0.0, 1.0);
+  // E falls by g = -3 as the third goes in, and by -1 as the second does; the first would go out.
+  EXPECT_EQ(order.SteepestAscent(Vector({2, -1, -3, 7, 0, 0})), Vector({0, -1, -3, 7, 0, 0}));
+  // Where the third would hold the second back, both stay: the mean goes out.
+  EXPECT_EQ(order.SteepestAscent(Vector({0, -1, 3, 0, 0, 0})), Vector({0, 0, 0, 0, 0, 0}));
+  // At the other end the former may go in before the latter.
+  EXPECT_EQ(order.SteepestAscent(Vector({0, 0, 0, 0, 2, -5})), Vector({0, 0, 0, 0, 2, 0}));
+}
+
+TEST(OrderedParameters, KeepTogetherWhatTheGradientKeeps) {
+  const OrderedParameters order(Vector({0.0, 0.0, 0.4, 0.4, 0.4, 0.9}), 0.0, 1.0);
+  // The first stays at the end, the second goes in, two of three go together.
+  const Eigen::VectorXd ascent = Vector({0, -1, 3, 3, -2, 5});
+  EXPECT_EQ(order.KeptTogether(ascent, Vector({7, 1, 2, 4, 9, 6})), Vector({0, 1, 3, 3, 9, 6}));
+  // Across the seam the last and the first are at one place.
+  const OrderedParameters around(Vector({0.0, 0.4, 1.0, 1.0}), 1.0);
+  EXPECT_EQ(around.KeptTogether(Vector({2, 0, 1, 2}), Vector({1, 5, 9, 3})), Vector({2, 5, 9, 2}));
+}
+
 TEST(OrderedParameters, PoolTheLastAndTheFirstAroundTheSeam) {
   // The last two pool to 1.25, a quarter after the first: (0 + 2 / 4) / 3 = 1 / 6 of three.
   const OrderedParameters order(Vector({0.0, 0.4, 1.3, 1.2}), 1.0);

@@ -68,6 +68,39 @@ TEST(OrderOfPoints, EndsWhereNoOrderedStepLowersTheEnergy) {
   }
 }
 
+TEST(OrderOfPoints, EndsInConstrainedMinimaWherePointsPressOnTheEndsOfAnOpenCurve) {
+  // Ends of these outlines lie side by side: many points come to an end of the curve.
+  for (const char* file : {"rhino_100", "cat_110", "squirrel_120", "dolphin_80"}) {
+    for (const char* start : {"circle", "data"}) {
+      SCOPED_TRACE(std::string(file) + " " + start);
+      FitSpec spec = MakeFreeSpec(3, false, 12, start);
+      spec.keep_order = true;
+      spec.guard = NameSpec{"length", {}, nullptr};
+      const auto problem = MakeFileFit(std::string("animals/") + file + ".csv", spec);
+      SolverTrial trial(*problem, "lbfgs", {20000});
+      const CurveFit& fit = *problem->curve_fit();
+      const auto m = fit.parameters().size();
+      const Eigen::VectorXd t = trial.all.tail(m);
+      EXPECT_EQ(trial.outcome.reason, StopReason::kGradientSmall) << ToString(trial.outcome.reason);
+      EXPECT_TRUE(IsInOrder(t));
+      EXPECT_GE(t[0], fit.basis().domain_begin());
+      EXPECT_LE(t[m - 1], fit.basis().domain_end());
+      // Neither a point alone nor, as at the ends, some neighbours together go down.
+      const double energy = trial.context.Energy(trial.x);
+      const auto offset = trial.x.size() - m;
+      for (Eigen::Index i = 0; i < m; ++i) {
+        for (Eigen::Index last = i; last < std::min(i + 6, m); ++last) {
+          for (const double step : {-1e-4, 1e-4}) {
+            Eigen::VectorXd x = trial.x;
+            x.segment(offset + i, last - i + 1).array() += step;
+            EXPECT_GE(trial.context.Energy(x), energy * (1.0 - 1e-9)) << i << " to " << last;
+          }
+        }
+      }
+    }
+  }
+}
+
 /// Points that go around more than once: the last are to be a period after the first.
 std::unique_ptr<Problem> MoreThanOnceAround(int m, double turns, unsigned seed) {
   std::mt19937 random(seed);
