@@ -112,9 +112,16 @@ Status AndersonSolver::TryCandidate(const Eigen::VectorXd& x, bool* rises) {
   const Status status = Evaluate(candidate_, &next_energy_, &next_gradient_);
   if (status != Status::kOk) return status;
   // Of a quadratic the difference of E without cancellation: the mean slope along the step.
-  *rises = objective()->is_quadratic() ? !((gradient_ + next_gradient_).dot(candidate_ - x) <= 0.0)
-                                       : !(next_energy_ <= energy_);
+  rise_ = objective()->is_quadratic() ? 0.5 * (gradient_ + next_gradient_).dot(candidate_ - x)
+                                      : next_energy_ - energy_;
+  *rises = !(rise_ <= 0.0);
   return status;
+}
+
+bool AndersonSolver::IsBeyondRounding(const Eigen::VectorXd& x) {
+  if (residual_size_ < 0.0) residual_size_ = objective()->ResidualSize(x);
+  // Both values of E carry it.
+  return !(rise_ <= 2.0 * Objective::EnergyRoundingFloor(energy_, residual_size_));
 }
 
 std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
@@ -137,7 +144,7 @@ std::optional<Outcome> AndersonSolver::DoStep(Eigen::VectorXd* x) {
     status = map_->Complete(&candidate_);
     if (status == Status::kOk) status = TryCandidate(*x, &rises);
     if (status != Status::kOk) return Ended(status);
-    if (rises && !base_raises_) {
+    if (rises && !base_raises_ && IsBeyondRounding(*x)) {
       base_raises_ = true;
       WarnOfDivergence("a step of " + base_->Info().name +
                        " raises E, so that E safeguards nothing");

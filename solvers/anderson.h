@@ -32,6 +32,8 @@ class AndersonSolver final : public Stepper {
   Eigen::VectorXd Accelerated() const;
   /// Sets `rises` where E(candidate) is above E(x); leaves its value and gradient in next_*.
   Status TryCandidate(const Eigen::VectorXd& x, bool* rises);
+  /// Whether E has risen by more than its rounding, from x to the candidate.
+  bool IsBeyondRounding(const Eigen::VectorXd& x);
 
   int window_;
   std::unique_ptr<Solver> base_;
@@ -42,6 +44,8 @@ class AndersonSolver final : public Stepper {
   Eigen::VectorXd candidate_;
   double energy_ = 0.0;
   double next_energy_ = 0.0;
+  double rise_ = 0.0;            // of E to the candidate
+  double residual_size_ = -1.0;  // Objective::ResidualSize, once it was asked for
   Eigen::VectorXd gradient_;
   Eigen::VectorXd next_gradient_;
   Eigen::VectorXd last_image_;  // empty before the first step

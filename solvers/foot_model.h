@@ -19,9 +19,10 @@ namespace batten {
 /// point's weight times rho'(s), the model then being that of a sum of squares that touches E from
 /// above, rho being concave; kNewton has the curvature of rho too, with c = 2 w_i^2 / W rho''(s):
 ///   + c B B' (x) r r',  g + c / w (C' . r) B (x) r,  1 / a + c / w^2 (C' . r)^2.
+/// Damping times |C'|^2 is at least damping times a thousandth of the mean of |C'|^2 on the curve.
 enum class FootModelKind {
   kPoint,      ///< PDM: a = 0. t stays.
-  kTangent,    ///< TDM, and Gauss-Newton with t eliminated: a = w / ((1 + damping) |C'|^2).
+  kTangent,    ///< TDM, and Gauss-Newton with t eliminated: a = w / (|C'|^2 + damping |C'|^2).
   kCurvature,  ///< SDM: a = w min(1 / |C'|^2, 1 / (|C'|^2 + r . C'')).
   kNewton,     ///< Newton with t eliminated: a = w / (|C'|^2 + r . C'' + damping |C'|^2).
 };
@@ -130,7 +131,8 @@ class FootModel {
   std::vector<double> places_;        // t in the domain
   std::vector<double> along_;         // C' . r
   std::vector<double> denominators_;  // of the parameter's step; 0: it stays
-  std::vector<double> scales_;        // w |C'|^2 times the damping
+  std::vector<double> scales_;        // w |C'|^2, at least least_speed_, times the damping
+  double least_speed_ = 0.0;          // |C'|^2 below which damping takes this instead
   std::vector<int> shares_;           // spans of each thread
   // m each, empty without a loss, of the last Sum: w_i rho'(s_i), and 2 w_i / W rho'' / rho'.
   std::vector<double> robust_weights_;

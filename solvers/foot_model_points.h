@@ -139,6 +139,10 @@ struct FootModel::SpanPoints {
     }
     *along = product;
     if constexpr (kBent) bend = bend + at.loss_bend * product * product;
+    // Where C' all but vanishes, damping by |C'|^2 alone would hold no step of t back.
+    const Pack least(model.least_speed_);
+    const typename Pack::Mask slow = speed < least;
+    const Pack damped = Choose(slow, least, speed);
     const Pack zero(0.0);
     Pack a = zero, denominator = zero;
     if (model.kind_ != FootModelKind::kPoint) {
@@ -147,7 +151,7 @@ struct FootModel::SpanPoints {
         moves = moves & (zero < Pack::Gather(model.moves_.data(), pack.points, 1));
       }
       if (!model.basis_.periodic()) moves = moves & !IsPressed(pack.t, product);
-      denominator = (1.0 + model.damping_) * speed;
+      denominator = Choose(slow, speed + model.damping_ * damped, (1.0 + model.damping_) * speed);
       if (model.kind_ == FootModelKind::kCurvature) {
         denominator = Choose(zero < bend, speed + bend, speed);
       } else if (model.kind_ == FootModelKind::kNewton) {
@@ -161,7 +165,7 @@ struct FootModel::SpanPoints {
     }
     product.StoreFirst(&model.along_[pack.place], pack.count);
     denominator.StoreFirst(&model.denominators_[pack.place], pack.count);
-    (pack.weight * model.damping_ * speed).StoreFirst(&model.scales_[pack.place], pack.count);
+    (pack.weight * model.damping_ * damped).StoreFirst(&model.scales_[pack.place], pack.count);
     return a;
   }
 };

@@ -94,6 +94,28 @@ TEST(Anderson, NeverRaisesTheEnergyAtTheFeetOverPdm) {
   }
 }
 
+TEST(Anderson, DoesNotTakeRoundingForABaseThatRaisesTheEnergy) {
+  for (const char* name : {"rhino_100", "cat_110", "squirrel_120", "dolphin_80"}) {
+    for (const char* solver : {"anderson:pdm", "anderson:tdm"}) {
+      const SolverTrial trial(*Outline(name, 12), solver, {2000});
+      EXPECT_EQ(trial.context.notes().count("may not converge"), 0U) << name << " " << solver;
+    }
+  }
+}
+
+/// Where it is said that no step lowers E, steps of many lengths along -g must not.
+void ExpectNoStepDown(const Problem& problem, SolverTrial* trial, double noise) {
+  Objective objective(&problem, nullptr);
+  Eigen::VectorXd gradient;
+  double energy = 0.0;
+  ASSERT_EQ(objective.EnergyAndGradient(trial->x, &energy, &gradient), Status::kOk);
+  for (double length = 1.0; length > 1e-9; length *= 0.1) {
+    const Eigen::VectorXd x = trial->x - length * gradient.stableNormalized();
+    EXPECT_GE(trial->context.Energy(x), energy - 8.0 * noise)
+        << length << ", |g| " << gradient.norm();
+  }
+}
+
 /// A right answer or an honest end: E is finite and not above the start's.
 void ExpectEndsHonestly(const Problem& problem) {
   for (const char* solver : kFreeSolvers) {
@@ -112,6 +134,10 @@ void ExpectEndsHonestly(const Problem& problem) {
     EXPECT_LE(end, start + noise) << ToString(trial.outcome.reason);
     EXPECT_NE(trial.outcome.reason, StopReason::kNotRun);
     EXPECT_NE(trial.outcome.reason, StopReason::kDiverged);
+    const bool is_ours = solver != std::string("ceres_lbfgs") && solver != std::string("ceres_lm");
+    if (trial.outcome.reason == StopReason::kLineSearchEnded && is_ours) {
+      ExpectNoStepDown(problem, &trial, noise);
+    }
     if (trial.outcome.reason == StopReason::kNumericalFailure) {
       EXPECT_FALSE(trial.outcome.message.empty());
     }
@@ -131,6 +157,23 @@ TEST(FreeFitsOfBadData, EndHonestlyWithPointsOnALine) {
     SCOPED_TRACE(start);
     ExpectEndsHonestly(*MakeFit(DataOf(points), MakeFreeSpec(3, true, 8, start)));
     ExpectEndsHonestly(*MakeFit(DataOf(points), MakeFreeSpec(3, false, 8, start)));
+  }
+}
+
+TEST(FreeFitsOfBadData, EndHonestlyWhereTheCurveTurnsBackOnItself) {
+  // Of points on a line that are in no order: C' vanishes where the curve turns.
+  Points points(50, 2), numbers(50, 1);
+  for (int i = 0; i < 50; ++i) {
+    const int place = 17 * i % 50;
+    points.row(i) << place, 2.0 * place;
+    numbers(i, 0) = std::cos(0.7 * i);
+  }
+  for (const bool closed : {true, false}) {
+    for (const char* start : {"ellipse", "data"}) {
+      SCOPED_TRACE(std::string(start) + (closed ? " closed" : " open"));
+      ExpectEndsHonestly(*MakeFit(DataOf(points), MakeFreeSpec(3, closed, 8, start)));
+    }
+    ExpectEndsHonestly(*MakeFit(DataOf(numbers), MakeFreeSpec(3, closed, 8, "data")));
   }
 }
 
