@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "experiments/run_control.h"
+#include "experiments/short_number.h"
 #include "experiments/sparse_run.h"
+#include "problems/fit_problem.h"
 #include "solvers/solver_registry.h"
 
 namespace batten {
@@ -49,6 +51,33 @@ class Watched final : public EvaluationMonitor {
   const EvaluationWatch& watch_;
 };
 
+/// What a user of moving parameters has to know to read the end of a run.
+void AddWarnings(const Problem& problem, RunResult* result) {
+  const CurveFit* fit = problem.curve_fit();
+  if (fit == nullptr || !(fit->has_free_parameters() || fit->is_projected())) return;
+  const int degree = fit->basis().degree();
+  const std::string& solver = result->solver.name;
+  if (degree == 1) {
+    result->notes.emplace_back("degree 1",
+                               "the curve has corners, where E has no derivative by t: a run may "
+                               "end at one, with |g| not small");
+  } else if (degree == 2 && (solver == "newton" || solver == "foot_newton" || solver == "sdm")) {
+    result->notes.emplace_back(
+        "degree 2", "second derivatives jump at knots, so that convergence may be slow there");
+  }
+  // Inside, data have a size of about 1.
+  constexpr double kFar = 1e4;
+  const Points control_points = fit->ControlPoints(result->x);
+  const Eigen::Map<const Eigen::RowVectorXd> center(fit->setting().center, fit->dimension());
+  const double reach =
+      (control_points.rowwise() - center).rowwise().norm().maxCoeff() / fit->size();
+  if (reach > kFar) {
+    result->notes.emplace_back("far from the data",
+                               "control points are up to " + ShortNumber(reach, 2) +
+                                   " times the data's size away, where rounding hides much of E");
+  }
+}
+
 /// `most_iterates`: 0 for what `spec` says.
 bool RunWatched(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
                 std::size_t most_iterates, RunResult* result, std::string* error,
@@ -75,6 +104,7 @@ bool RunWatched(const Problem& problem, const NameSpec& solver_name, const RunSp
   result->outcome = solver->Minimize(&objective, &control, &x);
   control.Finish(x);
   result->observed_rate = ObservedRate(*result);
+  if (result->x.allFinite()) AddWarnings(problem, result);
   return true;
 }
 

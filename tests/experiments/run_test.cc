@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "experiments/sparse_run.h"
 #include "tests/experiments/outlines.h"
@@ -12,8 +14,11 @@
 namespace batten {
 namespace {
 
+using ::testing::AnyOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 TEST(Run, RaceEndsWhereTheGradientHasFallenByTheTolerance) {
   const auto problem = LoadCatalogueProblem("rhino");
@@ -236,6 +241,38 @@ TEST(Run, NeedsLittleMoreThanOneEvaluationAnIterationWithoutCompilation) {
     EXPECT_EQ(result.outcome.reason, StopReason::kGradientSmall) << name;
     EXPECT_LE(result.counts.energy_calls, 1.2 * result.iterations + 5) << name;
   }
+}
+
+std::vector<std::string> NoteNames(const RunResult& result) {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : result.notes) names.push_back(name);
+  return names;
+}
+
+TEST(Run, WarnsOfKinksAndOfCurvesFarFromTheDataWhereParametersMove) {
+  const auto rhino = LoadCatalogueProblem("rhino_free");
+  FitSpec spec = rhino->curve_fit()->spec();
+  RunSpec few;
+  few.max_iterations = 3;
+  const auto notes_on = [&](const std::string& solver) {
+    std::string error;
+    const auto problem = MakeFitProblem(rhino->curve_fit()->data(), spec, &error);
+    EXPECT_NE(problem, nullptr) << error;
+    return NoteNames(RunSolver(*problem, solver, few));
+  };
+  EXPECT_THAT(notes_on("newton"),
+              Not(Contains(AnyOf("degree 1", "degree 2", "far from the data"))));
+  spec.degree = 2;
+  EXPECT_THAT(notes_on("newton"), Contains("degree 2"));
+  EXPECT_THAT(notes_on("lbfgs"), Not(Contains("degree 2")));
+  spec.degree = 1;
+  for (const char* solver : {"newton", "lbfgs", "ceres_lm"}) {
+    EXPECT_THAT(notes_on(solver), Contains("degree 1")) << solver;
+  }
+  spec = rhino->curve_fit()->spec();
+  const CurveFit& fit = *rhino->curve_fit();
+  spec.start_points = 1e7 * fit.ControlPoints(rhino->start());
+  EXPECT_THAT(notes_on("lbfgs"), Contains("far from the data"));
 }
 
 TEST(Run, KnowsWhereALineSearchHasToEnd) {
