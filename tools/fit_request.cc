@@ -2,10 +2,14 @@
 
 #include <gflags/gflags.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "problems/curve_constraints.h"
 #include "problems/fit_guard.h"
 #include "tools/fairing_flags.h"
 #include "tools/fitted_points.h"
+#include "tools/flags.h"
 #include "tools/knot_file.h"
 #include "tools/max_distance_flags.h"
 #include "tools/run_flags.h"
@@ -172,8 +176,15 @@ bool ApplyStart(FitRequest* request, std::string* error) {
     }
   }
   request->input_files.push_back(FLAGS_start);
-  if (ReadFittedControlPoints(FLAGS_start, &spec->start_points, error)) return true;
-  *error = "--start: " + *error;
+  if (ReadFittedControlPoints(FLAGS_start, spec->degree, spec->closed, &spec->start_points,
+                              error)) {
+    return true;
+  }
+  std::error_code ignored;
+  *error = std::filesystem::exists(FLAGS_start, ignored)
+               ? "--start: " + *error
+               : RefusedFlag("start", FLAGS_start,
+                             "data, centroid, circle, ellipse or a file of batten fit --out");
   return false;
 }
 

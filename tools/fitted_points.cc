@@ -6,7 +6,18 @@
 
 namespace batten {
 
-bool ReadFittedControlPoints(const std::string& path, Points* points, std::string* error) {
+namespace {
+
+/// Control points of another kind of curve would be read as one that nobody fitted.
+bool IsOfKind(const nlohmann::json& spline, int degree, bool closed) {
+  return (!spline.contains("degree") || spline["degree"] == degree) &&
+         (!spline.contains("periodic") || spline["periodic"] == closed);
+}
+
+}  // namespace
+
+bool ReadFittedControlPoints(const std::string& path, int degree, bool closed, Points* points,
+                             std::string* error) {
   nlohmann::json json;
   if (!ReadJsonFile(path, &json, error)) return false;
   const auto refuse = [&] {
@@ -17,6 +28,12 @@ bool ReadFittedControlPoints(const std::string& path, Points* points, std::strin
   };
   const nlohmann::json::json_pointer place("/spline/control_points");
   if (!json.is_object() || !json.contains(place) || !json.at(place).is_array()) return refuse();
+  if (!IsOfKind(json.at("spline"), degree, closed)) {
+    *error = path + ": /spline: found another kind of curve; allowed: " +
+             (closed ? "a closed" : "an open") + " one of degree " + std::to_string(degree) +
+             ", as is to be fitted";
+    return false;
+  }
   const nlohmann::json& rows = json.at(place);
   if (rows.empty() || !rows[0].is_array() || rows[0].empty() || rows[0].size() > kMaxDimension) {
     return refuse();

@@ -7,9 +7,10 @@
 
 namespace batten {
 
-/// Control points of a file that `batten fit --out` has written. False with `FILE: ...` for
-/// anything else.
-bool ReadFittedControlPoints(const std::string& path, Points* points, std::string* error);
+/// Control points of a curve of this degree, closed or open, from a file that `batten fit --out`
+/// has written. False with `FILE: ...` for anything else.
+bool ReadFittedControlPoints(const std::string& path, int degree, bool closed, Points* points,
+                             std::string* error);
 
 }  // namespace batten
 

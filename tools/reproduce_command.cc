@@ -25,6 +25,12 @@ std::vector<std::string> ReproductionNames() {
   return names;
 }
 
+std::string KnownReproductions() {
+  std::string text;
+  for (const std::string& name : ReproductionNames()) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 bool ChosenExperiments(const Reproduction& reproduction, std::vector<std::string>* only,
                        std::string* error) {
   if (!WasGiven("only")) return true;
@@ -123,7 +129,7 @@ Command ReproduceCommand() {
       "CSV files and figures: .svg with the gnuplot script (.gp) and the data (.dat) behind it. "
       "Each verdict is computed from the CSV by the rule stated beside it. Runs that an experiment "
       "expects to fail are no failures.",
-      "Reproductions: accelerated-gim, anderson, bezier-subdivision."};
+      "Reproductions: " + KnownReproductions() + "."};
   command.examples = {"batten reproduce accelerated-gim --out=out/accelerated-gim",
                       "batten reproduce accelerated-gim --only=figure_1 --repetitions=1"};
   FlagInfo repetitions = NumberFlag("repetitions", "N", 1.0, 1000.0);

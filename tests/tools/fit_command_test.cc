@@ -166,8 +166,11 @@ TEST(FitCommand, TakesFreeParametersAndTheirStarts) {
   // From its own end a run has nothing left to do.
   const Ended again = with({"--start=" + fit});
   EXPECT_LE(again.status, 1) << again.err;
-  EXPECT_EQ(with({"--start=" + (folder / "none.json")}).status, 2);
-  EXPECT_EQ(with({"--start=sphere"}).status, 2);
+  ExpectRefused(with({"--start=" + (folder / "none.json")}), {"--start", "none.json", "allowed: "});
+  ExpectRefused(with({"--start=sphere"}), {"--start", "sphere", "data, centroid, circle, ellipse"});
+  // Control points of another kind of curve are another curve's.
+  ExpectRefused(with({"--start=" + fit, "--degree=4"}), {"--start", "a closed one of degree 4"});
+  ExpectRefused(with({"--start=" + fit, "--noclosed"}), {"--start", "an open one of degree 3"});
   EXPECT_EQ(with({"--hold_ends"}).status, 2);
   EXPECT_EQ(RunBatten({"fit", kRhino, "--control_points=12", "--hold_ends"}).status, 2);
 }
