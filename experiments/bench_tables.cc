@@ -96,6 +96,21 @@ CostTable RowsOfKind(const BenchResults& results, const CostTable& all,
   return costs;
 }
 
+/// How many instances there are, who needs less on how many of them, and both profiles.
+void AddPairCounts(const CostTable& costs, std::vector<std::string>* cells) {
+  int less = 0, equal = 0, more = 0, neither = 0;
+  for (const std::vector<double>& pair : costs) {
+    const bool none = !std::isfinite(pair[0]) && !std::isfinite(pair[1]);
+    ++(none ? neither : pair[0] < pair[1] ? less : pair[0] > pair[1] ? more : equal);
+  }
+  cells->push_back(std::to_string(costs.size()));
+  for (const int count : {less, equal, more, neither}) cells->push_back(std::to_string(count));
+  const std::vector<Steps> profiles = PairProfiles(costs, 0, 1);
+  for (const double ratio : {1.0, 2.0, 10.0}) {
+    for (const Steps& profile : profiles) cells->push_back(NumberText(profile.At(ratio)));
+  }
+}
+
 /// For people: numbers that are not whole to four digits.
 CsvTable RoundedTable(const CsvTable& table) {
   CsvTable rounded = table;
@@ -202,34 +217,25 @@ CsvTable SolverTable(const BenchResults& results) {
 }
 
 CsvTable PairTable(const BenchResults& results) {
-  CsvTable table({"target", "cost", "first", "second", "instances", "first_less", "equal",
+  CsvTable table({"target", "kind", "cost", "first", "second", "instances", "first_less", "equal",
                   "second_less", "neither", "first_at_1", "second_at_1", "first_at_2",
                   "second_at_2", "first_at_10", "second_at_10"});
+  const std::vector<std::string> kinds = ParameterKinds(results);
+  std::vector<BenchResults> parts;
+  for (const std::string& kind : kinds) parts.push_back(OfKind(results, kind));
   for (std::size_t t = 0; t < results.targets.size(); ++t) {
-    for (const BenchCost cost : kBenchCosts) {
-      for (std::size_t a = 0; a < results.solvers.size(); ++a) {
-        for (std::size_t b = a + 1; b < results.solvers.size(); ++b) {
-          const CostTable costs = PairCosts(results, t, cost, a, b);
-          if (costs.empty()) continue;
-          int less = 0, equal = 0, more = 0, neither = 0;
-          for (const std::vector<double>& pair : costs) {
-            const bool none = !std::isfinite(pair[0]) && !std::isfinite(pair[1]);
-            ++(none ? neither : pair[0] < pair[1] ? less : pair[0] > pair[1] ? more : equal);
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      for (const BenchCost cost : kBenchCosts) {
+        for (std::size_t a = 0; a < parts[k].solvers.size(); ++a) {
+          for (std::size_t b = a + 1; b < parts[k].solvers.size(); ++b) {
+            const CostTable costs = PairCosts(parts[k], t, cost, a, b);
+            if (costs.empty()) continue;
+            std::vector<std::string> cells = {results.targets[t].label, kinds[k], ToString(cost),
+                                              WithoutCommas(parts[k].solvers[a]),
+                                              WithoutCommas(parts[k].solvers[b])};
+            AddPairCounts(costs, &cells);
+            table.AddRow(std::move(cells));
           }
-          const std::vector<Steps> profiles = PairProfiles(costs, 0, 1);
-          std::vector<std::string> cells = {results.targets[t].label,
-                                            ToString(cost),
-                                            WithoutCommas(results.solvers[a]),
-                                            WithoutCommas(results.solvers[b]),
-                                            std::to_string(costs.size()),
-                                            std::to_string(less),
-                                            std::to_string(equal),
-                                            std::to_string(more),
-                                            std::to_string(neither)};
-          for (const double ratio : {1.0, 2.0, 10.0}) {
-            for (const Steps& profile : profiles) cells.push_back(NumberText(profile.At(ratio)));
-          }
-          table.AddRow(std::move(cells));
         }
       }
     }

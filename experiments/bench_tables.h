@@ -21,8 +21,8 @@ CsvTable RunTable(const BenchResults& results);
 /// found, shifted geometric means of each cost (shift 10; of seconds 1 ms) with failures charged 10
 /// times the largest cost of their instance.
 CsvTable SolverTable(const BenchResults& results);
-/// A row per target, cost and pair of solvers: on how many instances both end in one basin, who
-/// needs less how often, and both profiles at the ratios 1, 2 and 10.
+/// A row per target, kind of parameters, cost and pair of solvers: on how many instances of that
+/// kind both end in one basin, who needs less how often, and both profiles at the ratios 1, 2, 10.
 CsvTable PairTable(const BenchResults& results);
 
 /// Adds table, solvers and pairs (.csv with all digits, .md and .tex with four) and notes.md to

@@ -290,6 +290,28 @@ TEST(BenchTables, KindsOfParametersHaveRowsOfTheirOwn) {
   EXPECT_THAT(table.Where("solver", "fixed_only").Distinct("kind"), ElementsAre("fixed"));
 }
 
+TEST(BenchTables, PairsAreCountedForEachKindOfParametersByItself) {
+  HandMadeBench bench({0.1});
+  const auto Add = [&bench](const std::string& problem, const std::string& kind, int a, int b) {
+    bench.AddInstance(problem, 0.0);
+    bench.AddRun(problem, "a", {{1, 0.0, 10.0}, {a, 0.2, 0.5}})["parameter_kind"] = kind;
+    bench.AddRun(problem, "b", {{1, 0.0, 10.0}, {b, 0.2, 0.5}})["parameter_kind"] = kind;
+  };
+  Add("p", "fixed", 5, 7);
+  Add("q", "fixed", 5, 8);
+  Add("r", "projected", 9, 4);
+  const CsvTable table = PairTable(bench.Results()).Where("cost", "evaluations");
+  EXPECT_THAT(table.Distinct("kind"), ElementsAre("fixed", "projected"));
+  for (const auto& [kind, instances, less, more] :
+       {std::tuple{"fixed", "2", "2", "0"}, {"projected", "1", "0", "1"}}) {
+    const CsvTable row = table.Where("kind", kind);
+    ASSERT_EQ(row.num_rows(), 1u) << kind;
+    EXPECT_EQ(row.Text(0, "instances"), instances) << kind;
+    EXPECT_EQ(row.Text(0, "first_less"), less) << kind;
+    EXPECT_EQ(row.Text(0, "second_less"), more) << kind;
+  }
+}
+
 TEST(BenchTargets, TheNoiseFloorIsTheEnergyOfTheTruth) {
   HandMadeBench bench({});
   nlohmann::json& noisy = bench.AddInstance("noisy", 1.0);

@@ -100,7 +100,7 @@ async function testPairProfiles({ expect, change, selectOf }) {
     return value === null ? Infinity : Math.max(1, value);
   }
 
-  // A row of its table is of all kinds of parameters, and of medians over repetitions, which are alike.
+  // A row of its table is of one kind of parameters, and of medians over repetitions, which are alike.
   async function testAgainstBench() {
     change(selectOf('Measured by'), 'evaluations');
     change(selectOf('Solved means'), '0.001');
@@ -111,13 +111,14 @@ async function testPairProfiles({ expect, change, selectOf }) {
     const close = usable.filter(row => Number(row.first_less) > 0 && Number(row.second_less) > 0);
     const tried = [...close, ...usable.filter((_, k) => k % 25 === 0)];
     expect('each pair of bench can be compared', known.every(row =>
-      usable.some(({ first, second }) => first === row.first && second === row.second)));
+      usable.some(({ kind, first, second }) => kind === row.kind && first === row.first && second === row.second)));
     if (isOfSuite) expect('some pairs of bench are close', close.length > 0 && tried.length > 5);
     const repetitions = new Set(raw.map(row => row.repetition)).size;
     for (const row of tried) {
       const sum = { first: 0, second: 0, equal: 0, neither: 0, instances: 0 };
       const withinTwo = [0, 0];
-      for (const plot of plots.filter(p => [row.first, row.second].every(name => namesOf(p).includes(name)))) {
+      const ofKind = plots.filter(plot => (plot.title.match(/(\w+) parameters/)?.[1] ?? row.kind) === row.kind);
+      for (const plot of ofKind.filter(p => [row.first, row.second].every(name => namesOf(p).includes(name)))) {
         await choose(plot, [row.first, row.second]);
         const counts = pairCounts(plot);
         for (const name of Object.keys(sum)) sum[name] += counts[name];
@@ -127,9 +128,9 @@ async function testPairProfiles({ expect, change, selectOf }) {
         });
       }
       const names = { first: 'first_less', second: 'second_less', equal: 'equal', neither: 'neither', instances: 'instances' };
-      expect(`${row.first} and ${row.second} as in pairs.csv`, Object.entries(names).every(([name, column]) =>
+      expect(`${row.kind}, ${row.first} and ${row.second} as in pairs.csv`, Object.entries(names).every(([name, column]) =>
         sum[name] === repetitions * Number(row[column])));
-      expect(`${row.first} and ${row.second}: profiles at 2 as in pairs.csv`, ['first_at_2', 'second_at_2']
+      expect(`${row.kind}, ${row.first} and ${row.second}: profiles at 2 as in pairs.csv`, ['first_at_2', 'second_at_2']
         .every((column, k) => Math.abs(withinTwo[k] / sum.instances - Number(row[column])) < 1e-4));
     }
   }
