@@ -129,6 +129,7 @@ bool WriteManifest(const BenchSuite& suite, const BenchSession& session, const s
   json["suite_hash"] = SuiteHash(suite);
   json["gap_targets"] = suite.gap_targets;
   json["cells"] = OrderedKeys(suite);
+  json["repeated_terms"] = RepeatedTerms(suite);
   json["program_hash"] = ProgramDigits();
   json["version"] = kVersion;
   json["commit"] = kGitCommit;

@@ -32,10 +32,28 @@ bool IsExcluded(const BenchSuite& suite, std::size_t problem, std::size_t terms,
                      });
 }
 
-/// Cells of one problem with one choice of terms in one repetition.
-void AddCells(const BenchSuite& suite, BenchCell cell, std::vector<BenchCell>* cells) {
+/// Choices of terms before `terms` that are the same on this problem.
+std::vector<std::size_t> SameBefore(const BenchSuite& suite, std::size_t problem,
+                                    std::size_t terms) {
+  const auto identity = [&](std::size_t choice) {
+    return TermsIdentity(suite.problems[problem], suite.terms[choice]);
+  };
+  std::vector<std::size_t> same;
+  for (std::size_t before = 0; before < terms; ++before) {
+    if (identity(before) == identity(terms)) same.push_back(before);
+  }
+  return same;
+}
+
+/// Cells of one problem with one choice of terms in one repetition; `same`: earlier choices that
+/// are the same there, whose cells are not run again.
+void AddCells(const BenchSuite& suite, const std::vector<std::size_t>& same, BenchCell cell,
+              std::vector<BenchCell>* cells) {
   for (std::size_t solver = 0; solver < suite.solvers.size(); ++solver) {
-    if (IsExcluded(suite, cell.problem, cell.terms, solver)) continue;
+    const bool runs_before = std::any_of(same.begin(), same.end(), [&](std::size_t before) {
+      return !IsExcluded(suite, cell.problem, before, solver);
+    });
+    if (runs_before || IsExcluded(suite, cell.problem, cell.terms, solver)) continue;
     for (const int seed : suite.seeds.solver) {
       cell.solver = solver;
       cell.seeds.solver = seed;
@@ -54,6 +72,7 @@ std::vector<BenchCell> OneRepetition(const BenchSuite& suite) {
     const bool starts = UsesStartSeed(problem) && !suite.seeds.start.empty();
     const std::vector<int>& start = starts ? suite.seeds.start : none;
     for (std::size_t t = 0; t < suite.terms.size(); ++t) {
+      const std::vector<std::size_t> same = SameBefore(suite, p, t);
       for (const int data_seed : data) {
         for (const int start_seed : start) {
           BenchCell cell;
@@ -62,7 +81,7 @@ std::vector<BenchCell> OneRepetition(const BenchSuite& suite) {
           cell.seeds.data = data_seed;
           cell.seeds.start = start_seed;
           cell.instance = instance++;
-          AddCells(suite, cell, &cells);
+          AddCells(suite, same, cell, &cells);
         }
       }
     }
@@ -134,6 +153,20 @@ std::vector<BenchCell> BenchMatrix(const BenchSuite& suite) {
     cells.insert(cells.end(), these.begin(), these.end());
   }
   return cells;
+}
+
+std::vector<std::string> RepeatedTerms(const BenchSuite& suite) {
+  std::vector<std::string> sentences;
+  for (std::size_t p = 0; p < suite.problems.size(); ++p) {
+    for (std::size_t t = 0; t < suite.terms.size(); ++t) {
+      const std::vector<std::size_t> same = SameBefore(suite, p, t);
+      if (same.empty()) continue;
+      sentences.push_back(suite.problems[p].label + " | " + suite.terms[t].label +
+                          ": left out, the same problem as with terms " +
+                          suite.terms[same.front()].label);
+    }
+  }
+  return sentences;
 }
 
 std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, int num_shards) {

@@ -20,8 +20,12 @@ struct BenchCell {
 };
 
 /// All cells of a suite, in the order in which they run: repetition by repetition, each in a random
-/// order of its own (but with "shuffled": false).
+/// order of its own (but with "shuffled": false). Of choices of terms that are the same on a
+/// problem the first runs.
 std::vector<BenchCell> BenchMatrix(const BenchSuite& suite);
+/// One sentence for each problem and choice of terms that is left out as the same as an earlier
+/// one.
+std::vector<std::string> RepeatedTerms(const BenchSuite& suite);
 /// Those of part `shard` of `num_shards`, counted from 1: whole instances, so that solvers that are
 /// compared run on one machine.
 std::vector<BenchCell> ShardOf(const std::vector<BenchCell>& cells, int shard, int num_shards);

@@ -1,5 +1,6 @@
 #include "experiments/bench_problem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -69,6 +70,24 @@ std::vector<NameSpec> TermsOf(const BenchProblem& problem, const BenchTerms& ter
     if (term.name == "distance") term.name = DistanceTermOf(problem.entry.spec.parameter_kind);
   }
   return used;
+}
+
+std::string TermsIdentity(const BenchProblem& problem, const BenchTerms& terms) {
+  std::vector<NameSpec> used = TermsOf(problem, terms);
+  if (used.empty()) used = {{DistanceTermOf(problem.entry.spec.parameter_kind), {}, nullptr}};
+  std::vector<std::string> texts;
+  for (const NameSpec& term : used) {
+    const Term* found = nullptr;
+    OptionValues options;
+    std::string ignored;
+    texts.push_back(term.name);
+    if (!TermRegistry::Global().Resolve(term, &found, &options, &ignored)) continue;
+    for (const auto& [name, value] : options.ToText()) texts.back() += "/" + name + "=" + value;
+  }
+  std::sort(texts.begin(), texts.end());
+  std::string identity;
+  for (const std::string& text : texts) identity += text + " ";
+  return identity;
 }
 
 bool UsesDataSeed(const BenchProblem& problem) {

@@ -24,6 +24,9 @@ std::unique_ptr<Problem> MakeBenchProblem(const BenchProblem& problem, const Ben
 /// Terms as they are used: `distance` replaced, the problem's own ones where none are named.
 std::vector<NameSpec> TermsOf(const BenchProblem& problem, const BenchTerms& terms);
 
+/// Those terms with all their options, in alphabetical order: equal ones make one problem.
+std::string TermsIdentity(const BenchProblem& problem, const BenchTerms& terms);
+
 /// Data of a synthetic problem, with the column t: C(t_i) + noise, at uniform t_i.
 DataSet SyntheticData(const SyntheticTruth& truth, const FitSpec& spec, int seed);
 /// The control points of the truth, n x 2: star: around the unit circle, its radius waving; wave:

@@ -51,6 +51,9 @@ class Collector {
     for (std::size_t i = 0; i < results_.instances.size(); ++i) FindMinimum(i);
     for (BenchRun& run : results_.runs) MeasureCosts(&run);
     AddNotes(&results_);
+    for (std::string& left_out : TextsAt(data_.manifest, "repeated_terms")) {
+      results_.notes.push_back(std::move(left_out));
+    }
     return std::move(results_);
   }
 

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cost_functions/term.h"
 #include "experiments/bench_matrix.h"
 #include "experiments/bench_problem.h"
 #include "problems/strict_json.h"
@@ -47,43 +46,6 @@ bool ReadProblems(const StrictObject& file, BenchSuite* suite, std::string* erro
       }
       suite->problems.push_back(std::move(problem));
     }
-  }
-  return true;
-}
-
-bool ReadTerms(const StrictObject& file, BenchSuite* suite) {
-  std::vector<std::string> texts = {"own"};
-  if (!file.Texts("terms", Presence::kOptional, &texts)) return false;
-  std::set<std::string> labels;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const std::string place = "terms/" + std::to_string(i);
-    BenchTerms terms;
-    std::string why;
-    if (texts[i] != "own" && !ParseNameSpecList(texts[i], &terms.terms, &why)) {
-      return file.Complain(place, why);
-    }
-    for (const NameSpec& term : terms.terms) {
-      // Kinds of parameters have different distances, with like options.
-      NameSpec checked = term;
-      if (checked.name == "distance") checked.name = "interpolation";
-      if (TermRegistry::Global().Find(checked.name) == nullptr) {
-        std::vector<std::string> names = TermRegistry::Global().Names();
-        names.insert(names.end(), {"distance", "own"});
-        return file.Complain(place, UnknownNameMessage("term", checked.name, names));
-      }
-      const Term* found = nullptr;
-      OptionValues options;
-      if (!TermRegistry::Global().Resolve(checked, &found, &options, &why)) {
-        return file.Complain(place, why);
-      }
-      // Labels are cells of tables.
-      terms.label += (terms.label.empty() ? "" : "+") + term.ToString();
-    }
-    if (terms.terms.empty()) terms.label = "own";
-    if (!labels.insert(terms.label).second) {
-      return file.Refuse(place, "each choice of terms once");
-    }
-    suite->terms.push_back(std::move(terms));
   }
   return true;
 }
@@ -285,11 +247,11 @@ bool ReadBenchSuite(const std::string& path, BenchSuite* suite, std::string* err
       !file.Word("format", Presence::kRequired, {"batten.suite/1"}, &format) ||
       !file.Text("name", Presence::kRequired, &read.name) ||
       !file.Text("summary", Presence::kOptional, &read.summary) || !ReadPlugins(file, path) ||
-      !ReadProblems(file, &read, error) || !ReadTerms(file, &read) ||
+      !ReadProblems(file, &read, error) || !ReadBenchTerms(file, &read) ||
       !ReadBenchSolvers(file, &read.solvers) || !ReadExclusions(file, &read) ||
       !ReadTargets(file, &read) || !ReadBudgets(file, &read) || !ReadRule(file, &read) ||
       !ReadSeeds(file, &read) || !ReadOrder(file, &read) || !ReadKeptIterates(file, &read) ||
-      !TryProblems(file, read) || !CheckExclusions(file, read)) {
+      !TryProblems(file, read) || !CheckRepeatedTerms(file, read) || !CheckExclusions(file, read)) {
     return false;
   }
   *suite = std::move(read);

@@ -91,6 +91,12 @@ bool ReadBenchProblems(const StrictObject& entry, const std::string& suite_path,
 /// The solvers of "solvers", with their option grids spread (bench_suite_solvers.cc).
 bool ReadBenchSolvers(const StrictObject& file, std::vector<NameSpec>* solvers);
 
+/// The choices of "terms" (bench_suite_terms.cc).
+bool ReadBenchTerms(const StrictObject& file, BenchSuite* suite);
+/// Whether each choice is another problem than those before it, on one of the problems at least;
+/// where it is not, its cells do not run (BenchMatrix).
+bool CheckRepeatedTerms(const StrictObject& file, const BenchSuite& suite);
+
 /// `text` with `*` for any text, possibly none.
 bool MatchesPattern(const std::string& pattern, const std::string& text);
 

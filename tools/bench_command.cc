@@ -47,6 +47,7 @@ bool ParseShard(const std::string& text, BenchSession* session) {
 std::string MatrixText(const BenchSuite& suite, const std::vector<BenchCell>& cells) {
   std::string text;
   for (const BenchCell& cell : cells) text += CellText(suite, cell) + "\n";
+  for (const std::string& left_out : RepeatedTerms(suite)) text += left_out + "\n";
   int instances = 0;
   std::vector<int> seen;
   for (const BenchCell& cell : cells) seen.push_back(cell.instance);

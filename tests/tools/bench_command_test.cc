@@ -28,6 +28,33 @@ TEST_F(Bench, DryRunPrintsTheMatrixAndWritesNothing) {
   EXPECT_EQ(folder_.Names(), std::vector<std::string>{"suite.json"});
 }
 
+TEST_F(Bench, TermsThatAreTheSameOnSomeProblemsRunOnceThere) {
+  json suite = GoodSuite();
+  // Of a file: another problem with its own terms than with the distance.
+  folder_.Write("faired.json", json({{"name", "faired"},
+                                     {"data", "animals/rhino_100.csv"},
+                                     {"spline", {{"control_points", 20}}},
+                                     {"terms", {"interpolation", "fairing/weight=1e-3"}}})
+                                   .dump());
+  suite["problems"][0] = folder_ / "faired.json";
+  suite["terms"] = {"own", "distance"};
+  suite["solvers"] = {"banded_cholesky", "cg"};
+  suite["repetitions"] = 1;
+  const Ended dry = RunBatten({"bench", Suite(suite), "--dry_run"});
+  ASSERT_EQ(dry.status, 0) << dry.err;
+  const std::string left_out = "wave | distance: left out, the same problem as with terms own";
+  EXPECT_THAT(Lines(dry.out), ::testing::Contains(left_out));
+  EXPECT_THAT(dry.out, HasSubstr("6 cells: 3 instances"));
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  EXPECT_EQ(Keys("out").size(), 6u);
+  EXPECT_THAT(ReadFile(folder_ / "out/notes.md"),
+              HasSubstr("distance: left out, the same problem as with terms own"));
+  // What is excluded under its first name runs under the second.
+  suite["exclude"] = {{{"problems", {"wave"}}, {"terms", {"own"}}, {"solvers", {"cg"}}}};
+  EXPECT_THAT(Lines(RunBatten({"bench", Suite(suite), "--dry_run"}).out),
+              ::testing::Contains("wave | distance | cg | seed 1 | repetition 1"));
+}
+
 TEST_F(Bench, KilledAtRandomTimesEndsWithTheSameTable) {
   const std::string suite = Suite(GoodSuite());
   ASSERT_EQ(RunIn(suite, "undisturbed").status, 0);

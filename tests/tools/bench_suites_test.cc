@@ -113,6 +113,22 @@ INSTANTIATE_TEST_SUITE_P(
         BadSuite{"Term",
                  [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
                  {"/terms/0", "did you mean fairing?"}},
+        BadSuite{"TermsTwiceByTheirMeaning",
+                 [](json* s) {
+                   (*s)["terms"] = {"distance", "distance,fairing/weight=1e-4", "interpolation"};
+                 },
+                 {"/terms/2: found interpolation, on every problem here the same as distance of "
+                  "/terms/0; allowed: each choice of terms once"}},
+        BadSuite{"OwnTermsTwice",
+                 [](json* s) {
+                   (*s)["terms"] = {"own", "interpolation/weight=1"};
+                 },
+                 {"/terms/1: found interpolation/weight=1, on every problem here the same as own"}},
+        BadSuite{"TermsTwiceInAnotherOrder",
+                 [](json* s) {
+                   (*s)["terms"] = {"distance,fairing/weight=1e-4", "fairing/weight=1e-4,distance"};
+                 },
+                 {"/terms/1: found fairing/weight=1e-4+distance, on every problem"}},
         BadSuite{"NegativeBudget",
                  [](json* s) { (*s)["budgets"]["seconds"] = -1; },
                  {"/budgets/seconds: found -1; allowed: 0.001 to"}},
