@@ -98,20 +98,28 @@ bool ReadTargets(const StrictObject& file, BenchSuite* suite) {
 bool ReadBudgets(const StrictObject& file, BenchSuite* suite) {
   StrictObject budgets;
   if (!file.Has("budgets")) return true;
+  RunSpec* const run = &suite->run;
   BenchLimits* const limits = &suite->limits;
   // Below a millisecond no process would even begin.
   constexpr double kShortest = 1e-3;
-  return file.Object("budgets", Presence::kRequired, &budgets) &&
-         budgets.HasOnly({"iterations", "seconds", "cpu_seconds", "wall_seconds", "memory_mb"}) &&
-         budgets.Integer("iterations", Presence::kOptional, 0, kLargest,
-                         &suite->run.max_iterations) &&
-         budgets.Number("seconds", Presence::kOptional, kShortest, kLongest,
-                        &suite->run.max_seconds) &&
-         budgets.Number("cpu_seconds", Presence::kOptional, kShortest, kLongest,
-                        &limits->cpu_seconds) &&
-         budgets.Number("wall_seconds", Presence::kOptional, kShortest, kLongest,
-                        &limits->wall_seconds) &&
-         budgets.Integer("memory_mb", Presence::kOptional, 16, 16'000'000, &limits->memory_mb);
+  if (!file.Object("budgets", Presence::kRequired, &budgets) ||
+      !budgets.HasOnly({"iterations", "seconds", "cpu_seconds", "wall_seconds", "memory_mb"}) ||
+      !budgets.Integer("iterations", Presence::kOptional, 0, kLargest, &run->max_iterations) ||
+      !budgets.Number("seconds", Presence::kOptional, kShortest, kLongest, &run->max_seconds) ||
+      !budgets.Number("cpu_seconds", Presence::kOptional, kShortest, kLongest,
+                      &limits->cpu_seconds) ||
+      !budgets.Number("wall_seconds", Presence::kOptional, kShortest, kLongest,
+                      &limits->wall_seconds) ||
+      !budgets.Integer("memory_mb", Presence::kOptional, 16, 16'000'000, &limits->memory_mb)) {
+    return false;
+  }
+  // The process would end before its solver may.
+  if (limits->wall_seconds == 0.0 || run->max_seconds <= limits->wall_seconds) return true;
+  if (budgets.Has("seconds")) {
+    return budgets.Refuse("seconds", "at most wall_seconds, " + NumberText(limits->wall_seconds));
+  }
+  run->max_seconds = limits->wall_seconds;
+  return true;
 }
 
 bool ReadRule(const StrictObject& file, BenchSuite* suite) {

@@ -1,4 +1,5 @@
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "experiments/bench_matrix.h"
@@ -11,52 +12,70 @@ namespace {
 
 using Presence = StrictObject::Presence;
 
+/// One value of an option and where it stands: "memory/1".
+struct PlacedValue {
+  std::string place;
+  std::string text;
+};
+
+/// What can stand behind the = of an option.
+bool IsWord(const std::string& text) {
+  const auto is_of_word = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '+';
+  };
+  return !text.empty() && std::all_of(text.begin(), text.end(), is_of_word);
+}
+
 /// Values of one option: a number or a word, or a list of them.
 bool ReadOptionValues(const StrictObject& options, const std::string& key,
-                      std::vector<std::string>* values) {
-  if (!options.IsList(key)) {
-    double number = 0.0;
-    std::string word;
-    if (options.IsNumber(key) &&
-        options.Number(key, Presence::kRequired, -HUGE_VAL, HUGE_VAL, &number)) {
-      *values = {NumberText(number)};
-      return true;
-    }
-    if (!options.Text(key, Presence::kRequired, &word)) return false;
-    *values = {word};
-    return true;
-  }
+                      std::vector<PlacedValue>* values) {
+  constexpr char kAllowed[] = "a number or a word, or a list of them";
   std::vector<StrictObject> entries;
-  if (!options.Entries(key, Presence::kRequired, "a list of numbers or words", &entries))
+  if (!options.IsList(key)) {
+    entries.push_back(options.Entry(key));
+  } else if (!options.Entries(key, Presence::kRequired, kAllowed, &entries)) {
     return false;
+  }
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    std::string text;
+    PlacedValue value = {options.IsList(key) ? key + "/" + std::to_string(i) : key, ""};
     double number = 0.0;
-    if (entries[i].IsText(&text)) {
-      values->push_back(text);
-    } else if (entries[i].IsNumber(&number)) {
-      values->push_back(NumberText(number));
-    } else {
-      return options.Refuse(key + "/" + std::to_string(i), "a number or a word");
+    if (entries[i].IsNumber(&number)) {
+      value.text = NumberText(number);
+    } else if (!entries[i].IsText(&value.text) || !IsWord(value.text)) {
+      return entries[i].Refuse("", options.IsList(key) ? "a number or a word" : kAllowed);
     }
+    values->push_back(std::move(value));
   }
   return true;
 }
 
-/// Each of `solvers` with each value of the option.
+/// Each of `solvers`, which are one with its options so far, with each value of the option.
 bool SpreadOption(const StrictObject& options, const std::string& key,
                   std::vector<NameSpec>* solvers) {
-  std::vector<std::string> values;
+  const SolverInfo& info = *SolverRegistry::Global().Find(solvers->front().name);
+  std::vector<PlacedValue> values;
+  OptionValues ignored;
   std::string why;
+  const bool is_known =
+      std::any_of(info.options.begin(), info.options.end(),
+                  [&key](const OptionInfo& option) { return option.name == key; });
+  if (!is_known) {
+    ResolveOptions(info.options, {solvers->front().name, {{key, ""}}, nullptr}, &ignored, &why);
+    return options.Complain(key, why);
+  }
+  for (const auto& [name, value] : solvers->front().options) {
+    if (name != key) continue;
+    return options.Refuse(key, "nothing, where `solver` has " + name + "=" + value);
+  }
   if (!ReadOptionValues(options, key, &values)) return false;
   std::vector<NameSpec> spread;
   for (const NameSpec& spec : *solvers) {
-    for (const std::string& value : values) {
+    for (const PlacedValue& value : values) {
       NameSpec with = spec;
-      with.options.emplace_back(key, value);
-      OptionValues ignored;
-      const SolverInfo& info = *SolverRegistry::Global().Find(spec.name);
-      if (!ResolveOptions(info.options, with, &ignored, &why)) return options.Complain(key, why);
+      with.options.emplace_back(key, value.text);
+      if (!ResolveOptions(info.options, with, &ignored, &why)) {
+        return options.Complain(value.place, why);
+      }
       spread.push_back(std::move(with));
     }
   }
@@ -99,6 +118,12 @@ bool ReadSolverGrid(const StrictObject& entry, std::vector<NameSpec>* solvers) {
     return entry.Complain(
         "solver", UnknownNameMessage("solver", base.name, SolverRegistry::Global().Names()));
   }
+  OptionValues ignored;
+  const SolverInfo& info = *SolverRegistry::Global().Find(base.name);
+  if (!ResolveOptions(info.options, base, &ignored, &why)) return entry.Complain("solver", why);
+  if (base.wrapped != nullptr && !wrapped.empty()) {
+    return entry.Refuse("wraps", "nothing, where `solver` wraps " + base.wrapped->ToString());
+  }
   std::vector<NameSpec> made = {base};
   for (const std::string& key : options.Keys()) {
     if (!SpreadOption(options, key, &made)) return false;
@@ -113,7 +138,8 @@ bool ReadSolverGrid(const StrictObject& entry, std::vector<NameSpec>* solvers) {
 bool ReadSolverEntry(const StrictObject& entry, std::vector<NameSpec>* solvers) {
   const SolverRegistry& registry = SolverRegistry::Global();
   std::string text, why;
-  if (!entry.IsText(&text)) return ReadSolverGrid(entry, solvers);
+  if (entry.IsObject()) return ReadSolverGrid(entry, solvers);
+  if (!entry.IsText(&text)) return entry.Refuse("", "a name with options, all, or an object");
   NameSpec spec;
   if (text == "all") {
     for (const std::string& name : registry.Names()) {

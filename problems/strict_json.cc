@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -51,6 +52,17 @@ class RepeatedKeys {
   }
   /// `/spline: key "degree" stands twice`; empty: none does.
   const std::string& first() const { return first_; }
+  /// Of the value behind what was parsed so far: "/spline/degree", "/a/2".
+  std::string NextPlace() const {
+    std::string place;
+    for (std::size_t k = 0; k < open_.size(); ++k) {
+      const Level& level = open_[k];
+      const bool is_next = level.is_list && k + 1 == open_.size();
+      place += "/" + (level.is_list ? std::to_string(level.entry + (is_next ? 1 : 0))
+                                    : Printable(level.key));
+    }
+    return place.empty() ? "/" : place;
+  }
 
  private:
   struct Level {
@@ -84,18 +96,26 @@ bool ReadJsonFile(const std::string& path, Json* json, std::string* error) {
                                     : ": found no such file that can be read");
     return false;
   }
+  constexpr int kTooLarge = 406;  // of nlohmann::json::out_of_range
   RepeatedKeys keys;
   try {
     *json = Json::parse(file, [&keys](int /*depth*/, Json::parse_event_t event, Json& parsed) {
       return keys(event, parsed);
     });
   } catch (const Json::exception& problem) {
-    std::string what =
-        problem.what();  // "[json.exception...] parse error at line 1, column 2: ..."
+    // "[json.exception...] parse error at line 1, column 2: ...", or, of a number, without a place.
+    const std::string what = problem.what();
     const std::size_t line = what.find("line ");
-    if (line == std::string::npos) what = what.substr(what.find(']') + 1);
-    *error =
-        path + ": " + Printable(line == std::string::npos ? what.substr(1) : what.substr(line));
+    const std::size_t quote = what.find('\'');
+    if (line != std::string::npos) {
+      *error = path + ": " + Printable(what.substr(line));
+    } else if (problem.id == kTooLarge && quote != std::string::npos) {
+      *error = path + ": " + keys.NextPlace() + ": found " +
+               Printable(what.substr(quote + 1, what.rfind('\'') - quote - 1)) +
+               "; allowed: numbers of at most " + NumberText(std::numeric_limits<double>::max());
+    } else {
+      *error = path + ":" + Printable(what.substr(what.find(']') + 1));
+    }
     return false;
   }
   if (keys.first().empty()) return true;
@@ -115,7 +135,7 @@ const Json* StrictObject::Find(const std::string& key) const {
 
 bool StrictObject::Complain(const std::string& key, const std::string& sentence) const {
   const std::string place = key.empty() && !pointer_.empty() ? pointer_ : pointer_ + "/" + key;
-  *error_ = file_ + ": " + place + ": " + sentence;
+  *error_ = file_ + ": " + Printable(place) + ": " + sentence;
   return false;
 }
 
@@ -282,6 +302,12 @@ bool StrictObject::Entries(const std::string& key, Presence presence, const std:
   }
   return true;
 }
+
+StrictObject StrictObject::Entry(const std::string& key) const {
+  return {file_, pointer_ + "/" + key, Find(key), error_};
+}
+
+bool StrictObject::IsObject() const { return json_ != nullptr && json_->is_object(); }
 
 bool StrictObject::IsText(std::string* text) const {
   if (json_ == nullptr || !json_->is_string()) return false;

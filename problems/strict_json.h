@@ -45,6 +45,9 @@ class StrictObject {
   /// The entries of a list, which need not be objects.
   bool Entries(const std::string& key, Presence presence, const std::string& allowed,
                std::vector<StrictObject>* entries) const;
+  /// What stands at `key`, which need not be an object; the key has to be there.
+  StrictObject Entry(const std::string& key) const;
+  bool IsObject() const;
   /// What stands here is a text and no object.
   bool IsText(std::string* text) const;
   bool IsNumber(double* number) const;

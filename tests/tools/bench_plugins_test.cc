@@ -132,7 +132,7 @@ TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
   json suite = SuiteOf({fault.plugin});
   suite["solvers"] = {"faulty", "cg"};
   if (fault.plugin == "fault_ignores_stop") suite["budgets"]["iterations"] = 30;
-  if (fault.plugin == "fault_sleeper") suite["budgets"]["wall_seconds"] = 1.0;
+  if (fault.plugin == "fault_sleeper") suite["budgets"] = {{"wall_seconds", 1.0}};
   if (fault.plugin == "fault_worker") suite["budgets"]["cpu_seconds"] = 1.0;
   const Ended ended = RunSuite(suite);
   EXPECT_EQ(ended.status, fault.status) << ended.err << ended.out;

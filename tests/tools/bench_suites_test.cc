@@ -91,7 +91,48 @@ INSTANTIATE_TEST_SUITE_P(
                  [](json* s) {
                    (*s)["solvers"][2]["options"] = {{"memory", {3, 0}}};
                  },
-                 {"/solvers/2/options/memory"}},
+                 {"/solvers/2/options/memory/1: option memory of lbfgs is 0"}},
+        BadSuite{"SolverOptionType",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memory", {3, true}}};
+                 },
+                 {"/solvers/2/options/memory/1: found true; allowed: a number or a word"}},
+        BadSuite{"SolverOptionWord",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"wolfe", {"weak", "strnog"}}};
+                 },
+                 {"/solvers/2/options/wolfe/1: ", "did you mean strong?"}},
+        BadSuite{"SolverOptionOfTwoLines",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"wolfe", "we\nak"}};
+                 },
+                 {"/solvers/2/options/wolfe: found \"we\\nak\"; allowed: a number or a word"}},
+        BadSuite{"SolverOptionWithASlash",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"mem\n/ory", true}};
+                 },
+                 {"/solvers/2/options/mem?/ory: lbfgs has no option", "did you mean memory"}},
+        BadSuite{"SolverOptionInTheText",
+                 [](json* s) {
+                   (*s)["solvers"][2] = {{"solver", "lbfgs/memory=0"},
+                                         {"options", {{"wolfe", {"weak"}}}}};
+                 },
+                 {"/solvers/2/solver: option memory of lbfgs is 0"}},
+        BadSuite{"SolverOptionInTextAndGrid",
+                 [](json* s) { (*s)["solvers"][2]["solver"] = "lbfgs/memory=3"; },
+                 {"/solvers/2/options/memory: found a list; allowed: nothing, where `solver` has "
+                  "memory=3"}},
+        BadSuite{"SolverThatWrapsAlready",
+                 [](json* s) {
+                   (*s)["solvers"][2] = {{"solver", "anderson:lspia"}, {"wraps", {"pdm"}}};
+                 },
+                 {"/solvers/2/wraps: found a list; allowed: nothing, where `solver` wraps lspia"}},
+        BadSuite{"SolverNumber",
+                 [](json* s) { (*s)["solvers"][1] = 3; },
+                 {"/solvers/1: found 3; allowed: a name with options, all, or an object"}},
+        BadSuite{"LongerThanItsProcess",
+                 [](json* s) { (*s)["budgets"]["wall_seconds"] = 10; },
+                 {"/budgets/seconds: found 20; allowed: at most wall_seconds, 10"}},
         BadSuite{"EmptyOptionGrid",
                  [](json* s) {
                    (*s)["solvers"][2]["options"] = {{"memory", json::array()}};
@@ -152,31 +193,34 @@ INSTANTIATE_TEST_SUITE_P(
                  [](json* s) { (*s)["keep_iterates"] = true; },
                  {"/keep_iterates: found true"}},
         BadSuite{"Target",
-                 [](json* s) {
-                   (*s)["targets"] = {{"gaps", {0.1, 2}}};
-                 },
+                 [](json* s) { (*s)["targets"] = {{"gaps", {0.1, 2}}}; },
                  {"/targets/gaps/1: found 2"}},
         BadSuite{"Seeds",
-                 [](json* s) {
-                   (*s)["seeds"] = {{"start", {1, 1.5}}};
-                 },
+                 [](json* s) { (*s)["seeds"] = {{"start", {1, 1.5}}}; },
                  {"/seeds/start/1: found 1.5"}},
         BadSuite{"ExclusionOfNothing",
-                 [](json* s) {
-                   (*s)["exclude"] = {{{"solvers", {"cg", "gmi"}}}};
-                 },
+                 [](json* s) { (*s)["exclude"] = {{{"solvers", {"cg", "gmi"}}}}; },
                  {"/exclude/0/solvers/1: unknown solver \"gmi\"", "did you mean "}},
         BadSuite{"ExclusionOfNoProblem",
-                 [](json* s) {
-                   (*s)["exclude"] = {{{"solvers", {"*"}}, {"problems", {"wev*"}}}};
-                 },
+                 [](json* s) { (*s)["exclude"] = {{{"solvers", {"*"}}, {"problems", {"wev*"}}}}; },
                  {"/exclude/0/problems/0: unknown problem \"wev*\""}},
         BadSuite{"ExclusionOfAll",
-                 [](json* s) {
-                   (*s)["exclude"] = {{{"solvers", {"*"}}}};
-                 },
+                 [](json* s) { (*s)["exclude"] = {{{"solvers", {"*"}}}}; },
                  {"/exclude: leaves nothing to run"}}),
     [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST_F(Bench, RefusesANumberThatIsTooLargeWithItsPlace) {
+  std::string text = GoodSuite().dump();
+  const std::string seconds = "\"seconds\":20";
+  text.replace(text.find(seconds), seconds.size(), "\"seconds\":1e999");
+  ExpectRefused(RunBatten({"bench", folder_.Write("suite.json", text), "--dry_run"}),
+                {"suite.json: /budgets/seconds: found 1e999; allowed: numbers of at most 1.79"});
+  text = GoodSuite().dump();
+  const std::string grid = "[3,10]";
+  text.replace(text.find(grid), grid.size(), "[3,-1e400]");
+  ExpectRefused(RunBatten({"bench", folder_.Write("suite.json", text), "--dry_run"}),
+                {"suite.json: /solvers/2/options/memory/1: found -1e400; allowed: numbers"});
+}
 
 }  // namespace
 }  // namespace batten
