@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 
-#include "problems/input_file.h"
+#include "cost_functions/options.h"
 #include "problems/strict_json.h"
 
 namespace batten {
@@ -15,18 +16,31 @@ const nlohmann::json* Find(const nlohmann::json& row, const char* key) {
   return found == row.end() ? nullptr : &*found;
 }
 
-/// Objects of a file of lines by their "key", of those with one key the last.
-std::map<std::string, nlohmann::json> ReadLines(const std::string& path) {
+/// Objects of a file of lines by their "key", of those with one key the last. Lines that are none,
+/// but for a torn last one, are said in `bad_lines`.
+std::map<std::string, nlohmann::json> ReadLines(
+    const std::string& path, const std::function<bool(const nlohmann::json&)>& is_good,
+    std::vector<std::string>* bad_lines) {
+  constexpr std::size_t kMostShown = 40;
   std::map<std::string, nlohmann::json> lines;
   std::ifstream file(path, std::ios::binary);
-  LineReader reader(&file);
-  for (std::string_view line; reader.Next(&line);) {
+  long number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
     nlohmann::json json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-    std::string key = TextAt(json, "key");
-    if (!key.empty()) lines[std::move(key)] = std::move(json);
+    if (is_good(json)) {
+      std::string key = TextAt(json, "key");
+      lines[std::move(key)] = std::move(json);
+    } else if (!file.eof() && !line.empty()) {
+      bad_lines->push_back(path + ":" + std::to_string(number) + ": found " +
+                           Quoted(line, kMostShown) +
+                           "; allowed: a row as bench writes it; it counts as not finished");
+    }
   }
   return lines;
 }
+
+bool HasKey(const nlohmann::json& json) { return !TextAt(json, "key").empty(); }
 
 }  // namespace
 
@@ -39,14 +53,19 @@ bool ReadBenchData(const std::string& folder, BenchData* data, std::string* erro
              "\"; allowed: batten.manifest/1, as batten bench writes it";
     return false;
   }
-  std::map<std::string, nlohmann::json> rows = ReadLines(folder + "/cells.jsonl");
-  data->instances = ReadLines(folder + "/instances.jsonl");
+  std::map<std::string, nlohmann::json> rows =
+      ReadLines(folder + "/cells.jsonl", &IsFinishedRow, &data->bad_lines);
+  data->instances = ReadLines(folder + "/instances.jsonl", &HasKey, &data->bad_lines);
   for (const std::string& key : TextsAt(data->manifest, "cells")) {
     ++data->num_cells;
     const auto found = rows.find(key);
     if (found != rows.end()) data->rows.push_back(std::move(found->second));
   }
   return true;
+}
+
+bool IsFinishedRow(const nlohmann::json& row) {
+  return HasKey(row) && TextAt(row, "format") == "batten.cell/1" && !TextAt(row, "stop").empty();
 }
 
 bool IsMeasured(const nlohmann::json& instance) {

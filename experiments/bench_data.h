@@ -15,7 +15,11 @@ struct BenchData {
   std::vector<nlohmann::json> rows;  // of the manifest's cells, in its order, as far as finished
   std::map<std::string, nlohmann::json> instances;  // by key
   std::size_t num_cells = 0;                        // that there are to be
+  std::vector<std::string> bad_lines;  // one sentence each, FILE:LINE first, of what was left out
 };
+
+/// Whether a line of cells.jsonl says how its cell ended.
+bool IsFinishedRow(const nlohmann::json& row);
 
 /// Whether a line of instances.jsonl stands: not where its process failed, or another program
 /// measured at the same time.

@@ -136,6 +136,8 @@ bool MergeBenches(const std::string& out, const std::vector<std::string>& folder
     parts.emplace_back();
     if (!ReadBenchData(folder, &parts.back(), error)) return false;
     if (!AreAlike(parts.front(), parts.back(), error)) return false;
+    const std::vector<std::string>& bad = parts.back().bad_lines;
+    report->bad_lines.insert(report->bad_lines.end(), bad.begin(), bad.end());
   }
   Merger merger(out);
   if (!merger.Open(error)) return false;

@@ -8,9 +8,10 @@ namespace batten {
 
 /// What merging has to say beside its files.
 struct MergeReport {
-  int cells = 0;       // in the merged folder
-  int duplicates = 0;  // rows that were in it, or came, more than once
-  int missing = 0;     // cells of the suite that no folder has
+  int cells = 0;                       // in the merged folder
+  int duplicates = 0;                  // rows that were in it, or came, more than once
+  int missing = 0;                     // cells of the suite that no folder has
+  std::vector<std::string> bad_lines;  // of the parts: BenchData::bad_lines
 };
 
 /// Puts results of one suite and one program into the folder `out`, which is created if missing and

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/atomic_file.h"
+#include "experiments/bench_data.h"
 #include "experiments/curve_records.h"
 #include "experiments/fit_report.h"
 
@@ -79,10 +81,11 @@ std::string WriteRecords(const Problem& problem, const RunResult& run, const Ben
 }
 
 bool HasRecords(const nlohmann::json& row, const BenchRecords& records) {
-  const auto trace_rows = row.value("trace_rows", 0L);
-  const auto iterate_rows = row.value("iterate_rows", 0L);
-  if (trace_rows > 0 && CountLines(records.trace) != trace_rows + 1) return false;
-  return iterate_rows == 0 ||
+  const double trace_rows = NumberAt(row, "trace_rows");
+  const double iterate_rows = NumberAt(row, "iterate_rows");
+  if (std::isnan(trace_rows) || std::isnan(iterate_rows)) return false;
+  if (trace_rows > 0.0 && CountLines(records.trace) != trace_rows + 1.0) return false;
+  return iterate_rows == 0.0 ||
          (CountLines(records.iterates) == iterate_rows && IsThere(records.curve));
 }
 

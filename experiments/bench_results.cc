@@ -50,6 +50,7 @@ class Collector {
     AddTargets();
     for (std::size_t i = 0; i < results_.instances.size(); ++i) FindMinimum(i);
     for (BenchRun& run : results_.runs) MeasureCosts(&run);
+    results_.notes = data_.bad_lines;
     AddNotes(&results_);
     for (std::string& left_out : TextsAt(data_.manifest, "repeated_terms")) {
       results_.notes.push_back(std::move(left_out));

@@ -38,7 +38,7 @@ BenchRecords BenchRunner::RecordsOf(std::size_t cell) const {
 
 void BenchRunner::TakeOver(const std::string& line) {
   nlohmann::json row = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-  if (!row.is_object() || !row.contains("key") || !row["key"].is_string()) return;
+  if (!IsFinishedRow(row)) return;  // ReadBenchData() says so
   const std::string key = row["key"];
   const auto cell = wanted_.find(key);
   if (cell == wanted_.end() || !HasRecords(row, RecordsOf(cell->second))) return;

@@ -20,9 +20,12 @@ int RunMerge(const std::vector<std::string>& positional, CommandOutput* output) 
   const std::vector<std::string> parts(positional.begin() + 1, positional.end());
   if (!MergeBenches(positional[0], parts, &report, &output->error)) return kBadInput;
   const int status = WriteBenchResults(positional[0], FLAGS_figures, FLAGS_strict, output);
-  output->results = std::to_string(report.cells) + " cells, " + std::to_string(report.missing) +
-                    " missing, " + std::to_string(report.duplicates) +
-                    " that were there more than once\n" + output->results;
+  std::string bad_lines;
+  for (const std::string& bad : report.bad_lines) bad_lines += bad + "\n";
+  output->results = bad_lines + std::to_string(report.cells) + " cells, " +
+                    std::to_string(report.missing) + " missing, " +
+                    std::to_string(report.duplicates) + " that were there more than once\n" +
+                    output->results;
   return status;
 }
 

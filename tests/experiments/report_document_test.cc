@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "experiments/report_traces.h"
 
@@ -176,13 +177,20 @@ TEST_F(ReportDocumentTest, HasTheNotesOfABenchmarkAlone) {
 }
 
 TEST_F(ReportDocumentTest, HasTheWorkUnitOfEachInstanceOfABenchmark) {
-  Write("cells.jsonl",
-        "{\"key\": \"a\", \"problem\": \"p\", \"terms\": \"own\", \"solver\": \"cg\", "
-        "\"instance\": \"1\"}\n"
-        "{\"key\": \"b\", \"problem\": \"q\", \"terms\": \"own\", \"solver\": \"cg\", "
-        "\"instance\": \"2\"}\n"
-        "{\"key\": \"c\", \"problem\": \"r\", \"terms\": \"own\", \"solver\": \"cg\", "
-        "\"instance\": \"3\"}\n");
+  std::string rows;
+  for (const auto& [key, problem, instance] :
+       {std::tuple{"a", "p", "1"}, {"b", "q", "2"}, {"c", "r", "3"}}) {
+    rows += json({{"format", "batten.cell/1"},
+                  {"key", key},
+                  {"problem", problem},
+                  {"terms", "own"},
+                  {"solver", "cg"},
+                  {"stop", "solved"},
+                  {"instance", instance}})
+                .dump() +
+            "\n";
+  }
+  Write("cells.jsonl", rows);
   const std::string instances =
       "{\"key\": \"1\", \"minimum_energy\": 1, \"evaluation_seconds\": 0.25}\n"
       "{\"key\": \"2\", \"minimum_energy\": null, \"evaluation_seconds\": 0.5}\n";

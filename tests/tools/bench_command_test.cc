@@ -205,6 +205,41 @@ TEST_F(Bench, CutsATornLastLine) {
   EXPECT_EQ(TimelessTable("out"), table);
 }
 
+TEST_F(Bench, SaysWhichLineIsNoRowAndRunsItsCellAgain) {
+  json suite = GoodSuite();
+  suite["solvers"] = {"cg"};
+  suite["repetitions"] = 2;
+  ASSERT_EQ(RunIn(Suite(suite), "out").status, 0);
+  std::vector<std::string> lines = Lines(ReadFile(folder_ / "out/cells.jsonl"));
+  ASSERT_EQ(lines.size(), 6u);
+  const auto Spoil = [&lines](std::size_t line, const char* key, const json& value) {
+    json row = json::parse(lines[line]);
+    row[key] = value;
+    lines[line] = row.dump();
+  };
+  lines[1].resize(lines[1].size() / 2);
+  Spoil(2, "stop", nullptr);
+  Spoil(3, "trace_rows", "some");
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  const std::string cells = folder_.Write("out/cells.jsonl", text);
+  const Ended ended = RunIn(Suite(suite), "out");
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  for (const char* line : {":2: found \"{", ":3: found \"{"}) {
+    EXPECT_THAT(ended.out, HasSubstr(cells + line));
+    EXPECT_THAT(ReadFile(folder_ / "out/notes.md"), HasSubstr(line));
+  }
+  EXPECT_THAT(ended.out, HasSubstr("6 of 6 cells"));
+  EXPECT_EQ(Lines(ReadFile(cells)).size(), 9u);
+  ExpectRefused(RunBatten({"report", folder_ / "out"}), {cells + ":2: found "});
+  // A part of which a line is lost says so where it is merged.
+  folder_.Write("out/cells.jsonl", text);
+  const Ended merged = RunBatten({"merge", folder_ / "merged", folder_ / "out", "--nofigures"});
+  EXPECT_EQ(merged.status, 0) << merged.err;
+  EXPECT_THAT(merged.out, HasSubstr(cells + ":2: found "));
+  EXPECT_THAT(merged.out, HasSubstr("4 cells, 2 missing"));
+}
+
 TEST_F(Bench, OnAFullDiskLosesNothingThatIsFinished) {
   const std::string suite = Suite(GoodSuite());
   Program::Streams streams;
