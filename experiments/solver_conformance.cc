@@ -8,6 +8,7 @@
 #include "experiments/conformance_fits.h"
 #include "experiments/fit_report.h"
 #include "experiments/guarded_vector.h"
+#include "experiments/identity_card.h"
 #include "experiments/run.h"
 #include "solvers/solver_registry.h"
 #include "solvers/stopping_context.h"
@@ -75,9 +76,9 @@ CheckVerdict ChecksDescription(const std::string& registered) {
   return {true, "options: " + std::to_string(info.options.size())};
 }
 
-/// Each option at its default, at both ends of its range and at each word.
+/// All options at their defaults, and each at both ends of its range and at each word.
 std::vector<std::string> OptionTexts(const std::vector<OptionInfo>& options) {
-  std::vector<std::string> texts;
+  std::vector<std::string> texts = {""};
   for (const OptionInfo& option : options) {
     std::vector<std::string> values = option.words;
     if (option.kind != OptionInfo::Kind::kWord) {
@@ -108,6 +109,11 @@ CheckVerdict ChecksOptions(const std::string& registered) {
       Eigen::VectorXd x = objective.start();
       Make(name, &error)->Minimize(&objective, &context, &x);
       if (!x.allFinite()) return Failed(name + " leaves no numbers" + InText(row.name));
+      RunResult run;
+      run.solver = Parsed(name);
+      run.notes = context.notes();
+      const std::string other = OptionsThatDiffer(run);
+      if (!other.empty()) return Failed(name + " ran with other options: " + other);
       ++num_runs;
     }
   }
@@ -346,7 +352,8 @@ std::vector<ConformanceCheck> SolverChecks(const std::string& registered, Solver
   return {
       {"description", "says what it is and where it is from, options with help",
        [registered] { return ChecksDescription(registered); }},
-      {"options", "runs at both ends and with each word of each option, refuses others",
+      {"options",
+       "runs at both ends and with each word of each option, with what was asked, refuses others",
        [registered] { return ChecksOptions(registered); }},
       each("descent", "lowers E on what it takes, and books its start", &ChecksDescent),
       each("claims", "what it says of its end passes the audit", &ChecksClaims),

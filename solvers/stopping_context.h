@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "problems/evaluation_monitor.h"
@@ -12,7 +13,7 @@
 
 namespace batten {
 
-/// A run that says stop at an iterate or at an evaluation, and notes what is asked of it after
+/// A run that says stop at an iterate or at an evaluation, and keeps what is asked of it after
 /// that: what solvers are judged by, in tests and by `batten check`.
 class StoppingContext final : public RunContext, public EvaluationMonitor {
  public:
@@ -38,7 +39,9 @@ class StoppingContext final : public RunContext, public EvaluationMonitor {
   StopReason stop_reason() const override {
     return stopped_ ? StopReason::kInterrupted : StopReason::kNotRun;
   }
-  void Note(const std::string& /*name*/, const std::string& /*value*/) override {}
+  void Note(const std::string& name, const std::string& value) override {
+    notes_.emplace_back(name, value);
+  }
   void OffTheClock(const std::function<void()>& work) override { work(); }
   std::uint64_t seed() const override { return 1; }
   int threads() const override { return threads_; }
@@ -48,6 +51,7 @@ class StoppingContext final : public RunContext, public EvaluationMonitor {
   int booked_after_stop() const { return booked_after_stop_; }
   int num_evaluations() const { return num_evaluations_; }
   const std::vector<Eigen::VectorXd>& iterates() const { return iterates_; }
+  const std::vector<std::pair<std::string, std::string>>& notes() const { return notes_; }
 
  private:
   int last_iterate_;
@@ -58,6 +62,7 @@ class StoppingContext final : public RunContext, public EvaluationMonitor {
   int asked_after_stop_ = 0;
   int booked_after_stop_ = 0;
   std::vector<Eigen::VectorXd> iterates_;
+  std::vector<std::pair<std::string, std::string>> notes_;
 };
 
 }  // namespace batten
