@@ -32,28 +32,41 @@ std::string WhyNoName(const std::string& name) {
            "_, at most " +
            std::to_string(kLongestName);
   }
-  // CMake has targets of these names already.
+  // A suite means a problem's terms by these.
+  if (IsOneOf(name, {"own", "distance"})) {
+    return "found " + name + " as a name, which has a meaning in suites; allowed: any other";
+  }
+  // There are targets of these names already, of CMake itself and of the packages that Batten
+  // needs.
   if (IsOneOf(name, {"all", "clean", "help", "install", "package", "package_source", "preinstall",
                      "edit_cache", "rebuild_cache", "test"})) {
     return "found " + name + " as a name, which is one of CMake's own; allowed: any other";
   }
+  if (IsOneOf(name, {"ceres", "gflags", "gflags_nothreads_shared", "gflags_nothreads_static",
+                     "gflags_shared", "gflags_static", "glog", "nlohmann_json", "pugixml"})) {
+    return "found " + name + " as a name, which is a library that Batten needs; allowed: any other";
+  }
   return "";
 }
 
-/// "my_solver" to "MySolver".
-std::string ClassName(const std::string& name) {
+/// "my_method" to "MyMethodSolver", "my_solver" to "MySolver". With its kind at the end no name
+/// hides what the source uses: Eigen, SimpleStepper, ...
+std::string ClassName(const std::string& name, const std::string& kind) {
   std::string text;
   bool is_first = true;
   for (const char c : name) {
     if (c != '_') text += is_first ? static_cast<char>(std::toupper(c)) : c;
     is_first = c == '_';
   }
-  return text;
+  const std::string ending = kind == "solver" ? "Solver" : "Term";
+  const bool has_ending = text.size() > ending.size() &&
+                          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+  return has_ending ? text : text + ending;
 }
 
-std::string Filled(std::string text, const std::string& name) {
+std::string Filled(std::string text, const std::string& name, const std::string& kind) {
   const std::pair<std::string, std::string> fields[] = {
-      {"@NAME@", name}, {"@CLASS@", ClassName(name)}, {"@VERSION@", kVersion}};
+      {"@NAME@", name}, {"@CLASS@", ClassName(name, kind)}, {"@VERSION@", kVersion}};
   for (const auto& [field, value] : fields) {
     for (std::size_t at = text.find(field); at != std::string::npos; at = text.find(field)) {
       text.replace(at, field.size(), value);
@@ -91,9 +104,10 @@ int RunNew(const std::vector<std::string>& positional, CommandOutput* output) {
   const std::string build = name + "/CMakeLists.txt";
   FileBatch files;
   const bool is_written =
-      files.Write(source, Filled(is_solver ? kSolverSkeleton : kTermSkeleton, name),
+      files.Write(source, Filled(is_solver ? kSolverSkeleton : kTermSkeleton, name, kind),
                   &output->error) != nullptr &&
-      files.Write(build, Filled(std::string(kBuild) + (is_solver ? kSolverTest : kTermTest), name),
+      files.Write(build,
+                  Filled(std::string(kBuild) + (is_solver ? kSolverTest : kTermTest), name, kind),
                   &output->error) != nullptr &&
       files.Commit(&output->error);
   if (!is_written) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include "tests/tools/program.h"
 
@@ -44,6 +45,22 @@ TEST(New, WritesASolverAndATerm) {
   EXPECT_THAT(folder.Names(), ElementsAre("my_solver", "my_term"));
 }
 
+TEST(New, NamesNoClassLikeSomethingThatTheSourceUses) {
+  for (const auto& [kind, name, class_name] :
+       {std::tuple{"solver", "eigen", "EigenSolver"},
+        {"term", "eigen", "EigenTerm"},
+        {"solver", "simple_stepper", "SimpleStepperSolver"},
+        {"term", "term_at_data_points", "TermAtDataPointsTerm"},
+        {"term", "t", "TTerm"},
+        {"solver", "my_method", "MyMethodSolver"},
+        {"solver", "solver", "SolverSolver"}}) {
+    const TemporaryFolder place;
+    ASSERT_EQ(NewIn(place, {kind, name}).status, 0) << name;
+    const std::string source = ReadFile(place / (std::string(name) + "/" + name + ".cc"));
+    EXPECT_THAT(source, HasSubstr("struct " + std::string(class_name) + " "));
+  }
+}
+
 TEST(New, RefusesBadNamesAndWritesNothing) {
   const TemporaryFolder folder;
   for (const std::string name :
@@ -52,6 +69,9 @@ TEST(New, RefusesBadNamesAndWritesNothing) {
     ExpectRefused(NewIn(folder, {"solver", name}), {"new: found ", "allowed: a lower-case letter"});
   }
   ExpectRefused(NewIn(folder, {"solver", "test"}), {"one of CMake's own"});
+  ExpectRefused(NewIn(folder, {"solver", "ceres"}), {"a library that Batten needs"});
+  ExpectRefused(NewIn(folder, {"term", "distance"}), {"has a meaning in suites"});
+  ExpectRefused(NewIn(folder, {"term", "own"}), {"has a meaning in suites"});
   ExpectRefused(NewIn(folder, {"solver", "lbfgs"}), {"a solver or term already"});
   ExpectRefused(NewIn(folder, {"term", "fairing"}), {"a solver or term already"});
   ExpectRefused(NewIn(folder, {"solvr", "mine"}),
