@@ -1,10 +1,13 @@
 #include "experiments/bench_matrix.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <random>
 #include <sstream>
 
 #include "experiments/content_hash.h"
+#include "solvers/needed_libraries.h"
 #include "solvers/plugin_loader.h"
 #include "solvers/solver_registry.h"
 
@@ -131,10 +134,23 @@ void AddRule(const BenchSuite& suite, std::ostream* text) {
         << ' ';
 }
 
+/// Whether the program itself is linked with it, as with the C library: those are of the machine,
+/// and their files, like those of the program's other libraries, are in no key.
+bool IsOfTheProgram(const std::string& library) {
+  static const auto& own =
+      *new std::vector<std::string>(NeededLibraries(dlopen(nullptr, RTLD_LAZY)));
+  return std::find(own.begin(), own.end(), library) != own.end();
+}
+
 std::string Hashed(const BenchProblem& problem, const std::string& text) {
   ContentHash hash;
   hash.Add(ProgramDigits());
-  for (const LoadedPlugin& plugin : LoadedPlugins()) hash.Add(plugin.sha256);
+  for (const LoadedPlugin& plugin : LoadedPlugins()) {
+    hash.Add(plugin.sha256);
+    for (const std::string& library : plugin.libraries) {
+      if (!IsOfTheProgram(library)) hash.Add(FileDigits(library));
+    }
+  }
   hash.Add(FileDigits(problem.entry.data_path));
   hash.Add(text);
   return hash.Digits();

@@ -36,8 +36,9 @@ bool KeepsIterates(const BenchSuite& suite, const BenchCell& cell);
 /// "rhino | own | lbfgs | data 1 start 2 seed 1 | repetition 3"
 std::string CellText(const BenchSuite& suite, const BenchCell& cell);
 
-/// What decides whether a finished row is the row that would be computed now: this program, the
-/// problem, its data, terms, solver with all its options, rule, limits and seeds.
+/// What decides whether a finished row is the row that would be computed now: this program,
+/// loaded plugins with the libraries that they bring in, the problem, its data, terms, solver with
+/// all its options, rule, limits and seeds.
 std::string BenchCellKey(const BenchSuite& suite, const BenchCell& cell);
 /// The same of what all cells of an instance share.
 std::string InstanceKey(const BenchSuite& suite, const BenchCell& cell);

@@ -12,6 +12,7 @@
 
 #include "experiments/bench_manifest.h"
 #include "experiments/bench_results.h"
+#include "solvers/plugin_loader.h"
 #include "tests/experiments/faulty_solvers.h"
 #include "tests/problems/scratch_folder.h"
 
@@ -246,6 +247,19 @@ TEST_F(BenchRunnerTest, StartsEveryRepetitionFromTheStart) {
     EXPECT_EQ(rows[0][key], rows[1][key]) << key;
   }
   EXPECT_GT(rows[0]["iterations"], 5);
+}
+
+TEST_F(BenchRunnerTest, KeysAreOfTheLibrariesOfPluginsToo) {
+  Run(R"("cg")");
+  const BenchCell cell = BenchMatrix(suite_).front();
+  std::set<std::string> keys = {BenchCellKey(suite_, cell)};
+  for (const char* name : {"a.so", "b.so", "c.so"}) {
+    const std::string library = folder_.Write(name, name == std::string("a.so") ? "one" : "other");
+    LoadedPlugins().push_back({"", "", {}, {}, {library}});
+    keys.insert(BenchCellKey(suite_, cell));
+    LoadedPlugins().pop_back();
+  }
+  EXPECT_EQ(keys.size(), 3u);  // none, one and the other
 }
 
 }  // namespace

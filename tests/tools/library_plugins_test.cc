@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -135,6 +136,39 @@ TEST(LibraryPlugins, TheManifestHasTheLibrariesThatWereLoaded) {
     }
     EXPECT_TRUE(is_there) << path << " in " << manifest["plugins"].dump();
   }
+}
+
+TEST(LibraryPlugins, AChangedLibraryRunsItsCellsAgain) {
+  if (!std::filesystem::exists(Plugin("liblbfgs"))) GTEST_SKIP() << "libLBFGS is not there";
+  const TemporaryFolder folder;
+  const std::string needed =
+      OutputOf("ldd " + Plugin("liblbfgs") + " | awk '/liblbfgs[-.0-9]*so/ {print $1, $3}'");
+  const std::size_t space = needed.find(' ');
+  ASSERT_NE(space, std::string::npos) << needed;
+  const std::string copy = folder / needed.substr(0, space);
+  std::filesystem::copy_file(needed.substr(space + 1), copy);
+  const nlohmann::json suite = {
+      {"format", "batten.suite/1"},
+      {"name", "libraries"},
+      {"plugins", {Plugin("liblbfgs")}},
+      {"problems",
+       {{{"synthetic", "wave"}, {"name", "wave"}, {"points", 30}, {"control_points", 8}}}},
+      {"solvers", {"liblbfgs"}},
+      {"warm_up", 0},
+      {"repetitions", 2}};
+  const std::string file = folder.Write("suite.json", suite.dump());
+  const auto RowsNow = [&] {
+    EXPECT_EQ(
+        RunBatten({"bench", file, "--out=" + (folder / "out"), "--nofigures", "--quiet"}).status,
+        0);
+    return Lines(ReadFile(folder / "out/cells.jsonl")).size();
+  };
+  setenv("LD_LIBRARY_PATH", (folder / "").c_str(), 1);
+  EXPECT_EQ(RowsNow(), 2u);
+  EXPECT_EQ(RowsNow(), 2u);
+  std::ofstream(copy, std::ios::app) << "another build";
+  EXPECT_EQ(RowsNow(), 4u);
+  unsetenv("LD_LIBRARY_PATH");
 }
 
 }  // namespace
