@@ -134,6 +134,12 @@ void AddPluginChecks(const Problem& problem, const RunResult& run, const RunSpec
   if (!IsOfPlugin(run.solver) || most <= 0.0) return;
   const std::optional<bool> reads = ReadsPastX(problem, run.solver, spec, most);
   if (reads.value_or(false)) (*json)["findings"].push_back("reads_past_x");
+  // Most runs end before a limit tells them to stop; one that went on when told is known already.
+  if (run.calls_past_stop > kMostCallsPastStop) return;
+  const int calls = CallsPastStop(problem, run.solver, spec, most).value_or(0);
+  if (calls <= kMostCallsPastStop) return;
+  (*json)["findings"].push_back("ignores_stop");
+  (*json)["calls_past_early_stop"] = calls;
 }
 
 ComparisonRow RunOnce(const Problem& problem, const NameSpec& solver, const RunSpec& spec,

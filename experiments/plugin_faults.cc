@@ -8,9 +8,11 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <random>
 
+#include "cost_functions/options.h"
 #include "experiments/child_process.h"
 #include "experiments/guarded_vector.h"
 #include "experiments/taylor_slope.h"
@@ -144,6 +146,41 @@ std::string CompareBehind(const Problem& problem, const NameSpec& solver, const 
   return is_steady ? kDiffers : "";
 }
 
+/// Evaluations and iterates asked for after a stop at an iterate, or at an evaluation: the more.
+std::string CountPastStop(const Problem& problem, const NameSpec& solver, const RunSpec& spec) {
+  constexpr int kIterates = 1;
+  constexpr int kEvaluations = 3;
+  int most = 0;
+  for (const auto& [iterates, evaluations] :
+       {std::pair{kIterates, StoppingContext::kNever}, {StoppingContext::kNever, kEvaluations}}) {
+    StoppingContext context(iterates, evaluations, spec.threads);
+    Objective objective(&problem, &context, Objective::Options{spec.compile});
+    Eigen::VectorXd x = objective.start();
+    std::string error;
+    SolverRegistry::Global().Make(solver, nullptr, &error)->Minimize(&objective, &context, &x);
+    most = std::max(most, context.asked_after_stop() + context.booked_after_stop());
+  }
+  return std::to_string(most);
+}
+
+/// What `work` answers in a process of its own within `max_seconds`; nothing where none can be
+/// made.
+std::optional<ChildEnd> Ask(const RunSpec& spec, double max_seconds,
+                            const std::function<std::string()>& work) {
+  ChildLimits limits;
+  limits.wall_seconds = max_seconds;
+  limits.cpu_seconds = std::max(1.0, max_seconds * spec.threads);
+  std::string error;
+  const auto process = ChildProcess::Start(limits, "/dev/null", work, &error);
+  if (process == nullptr) return std::nullopt;
+  constexpr int kInterval = 100;  // milliseconds
+  while (!process->Attend()) {
+    pollfd file = {process->file(), POLLIN, 0};
+    poll(&file, 1, kInterval);
+  }
+  return process->Finish();
+}
+
 }  // namespace
 
 bool IsOfPlugin(const NameSpec& solver) {
@@ -170,24 +207,24 @@ std::optional<std::vector<std::string>> TermsWithWrongGradient(
 
 std::optional<bool> ReadsPastX(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
                                double max_seconds) {
-  ChildLimits limits;
-  limits.wall_seconds = max_seconds;
-  limits.cpu_seconds = std::max(1.0, max_seconds * spec.threads);
-  std::string error;
-  const auto process = ChildProcess::Start(
-      limits, "/dev/null", [&] { return CompareBehind(problem, solver, spec); }, &error);
-  if (process == nullptr) return std::nullopt;
-  constexpr int kInterval = 100;  // milliseconds
-  while (!process->Attend()) {
-    pollfd file = {process->file(), POLLIN, 0};
-    poll(&file, 1, kInterval);
-  }
-  const ChildEnd end = process->Finish();
+  const std::optional<ChildEnd> asked =
+      Ask(spec, max_seconds, [&] { return CompareBehind(problem, solver, spec); });
+  if (!asked.has_value()) return std::nullopt;
+  const ChildEnd& end = *asked;
   const int signal = WIFSIGNALED(end.wait_status) ? WTERMSIG(end.wait_status) : 0;
   if (signal == SIGSEGV || signal == SIGBUS) return true;
   if (end.answer == kSame) return false;
   if (end.answer == kDiffers) return true;
   return std::nullopt;
+}
+
+std::optional<int> CallsPastStop(const Problem& problem, const NameSpec& solver,
+                                 const RunSpec& spec, double max_seconds) {
+  const std::optional<ChildEnd> end =
+      Ask(spec, max_seconds, [&] { return CountPastStop(problem, solver, spec); });
+  double count = 0.0;
+  if (!end.has_value() || !ParseNumber(end->answer, &count)) return std::nullopt;
+  return static_cast<int>(count);
 }
 
 }  // namespace batten

@@ -27,6 +27,12 @@ std::optional<std::vector<std::string>> TermsWithWrongGradient(
 std::optional<bool> ReadsPastX(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
                                double max_seconds);
 
+/// How many evaluations and iterates `solver` asks for after it was told to stop at its first
+/// iterate behind the start, or at its fourth evaluation, whichever are more; tried in a process of
+/// its own. Nothing where it cannot be tried or takes longer than `max_seconds`.
+std::optional<int> CallsPastStop(const Problem& problem, const NameSpec& solver,
+                                 const RunSpec& spec, double max_seconds);
+
 }  // namespace batten
 
 #endif  // BATTEN_EXPERIMENTS_PLUGIN_FAULTS_H_

@@ -131,7 +131,6 @@ TEST_P(FaultyPluginInBench, IsFlaggedAndTheOtherSolverGoesOn) {
   const FaultInBench& fault = GetParam();
   json suite = SuiteOf({fault.plugin});
   suite["solvers"] = {"faulty", "cg"};
-  if (fault.plugin == "fault_ignores_stop") suite["budgets"]["iterations"] = 30;
   if (fault.plugin == "fault_sleeper") suite["budgets"] = {{"wall_seconds", 1.0}};
   if (fault.plugin == "fault_worker") suite["budgets"]["cpu_seconds"] = 1.0;
   const Ended ended = RunSuite(suite);
@@ -175,6 +174,23 @@ INSTANTIATE_TEST_SUITE_P(
                      "faulty: other options ran: asked memory=5, ran memory=6"},
         kBenchReadsPastX),
     [](const auto& row) { return row.param.plugin.substr(6); });
+
+/// Whether a limit cuts the run, or it ends before any tells it to stop.
+TEST_F(BenchPlugins, FlagsASolverThatIgnoresStopWhateverTheLimits) {
+  json suite = SuiteOf({"fault_ignores_stop"});
+  for (const auto& [iterations, early] : {std::pair{10, false}, {10'000, true}}) {
+    suite["budgets"]["iterations"] = iterations;
+    const Ended ended = RunSuite(suite);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("faulty: ignores stop: "));
+    for (const json& one : Rows()) {
+      if (one["repetition"] != 1 || one["max_iterations"] != iterations) continue;
+      EXPECT_THAT(one["findings"].get<std::vector<std::string>>(), Contains("ignores_stop"));
+      EXPECT_EQ(one.contains("calls_past_early_stop"), early);
+      EXPECT_EQ(one["calls_past_stop"].get<int>() > 2, !early);
+    }
+  }
+}
 
 TEST_F(BenchPlugins, StopsAMemoryHog) {
   if (!kCanLimitMemory) GTEST_SKIP() << "the sanitizer needs terabytes of addresses";
