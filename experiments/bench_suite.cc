@@ -67,18 +67,6 @@ bool ReadExclusions(const StrictObject& file, BenchSuite* suite) {
   return true;
 }
 
-/// Whether no number stands twice in the list: its cells and targets would be counted twice.
-template <typename Number>
-bool IsWithoutRepeats(const StrictObject& object, const std::string& key,
-                      const std::vector<Number>& numbers) {
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto here = numbers.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find(numbers.begin(), here, numbers[i]) == here) continue;
-    return object.Refuse(key + "/" + std::to_string(i), "each number once");
-  }
-  return true;
-}
-
 bool ReadTargets(const StrictObject& file, BenchSuite* suite) {
   StrictObject targets;
   if (!file.Has("targets")) return true;
@@ -90,7 +78,7 @@ bool ReadTargets(const StrictObject& file, BenchSuite* suite) {
     if (suite->gap_targets[i] > 0.0 && suite->gap_targets[i] < 1.0) continue;
     return targets.Refuse("gaps/" + std::to_string(i), "numbers above 0 and below 1");
   }
-  if (!IsWithoutRepeats(targets, "gaps", suite->gap_targets)) return false;
+  if (!targets.IsWithoutRepeats("gaps", suite->gap_targets)) return false;
   std::sort(suite->gap_targets.rbegin(), suite->gap_targets.rend());
   return true;
 }
@@ -149,9 +137,9 @@ bool ReadSeeds(const StrictObject& file, BenchSuite* suite) {
          seeds.Integers("data", Presence::kOptional, 1, kLargest, &suite->seeds.data) &&
          seeds.Integers("start", Presence::kOptional, 1, kLargest, &suite->seeds.start) &&
          seeds.Integers("solver", Presence::kOptional, 0, kLargest, &suite->seeds.solver) &&
-         IsWithoutRepeats(seeds, "data", suite->seeds.data) &&
-         IsWithoutRepeats(seeds, "start", suite->seeds.start) &&
-         IsWithoutRepeats(seeds, "solver", suite->seeds.solver);
+         seeds.IsWithoutRepeats("data", suite->seeds.data) &&
+         seeds.IsWithoutRepeats("start", suite->seeds.start) &&
+         seeds.IsWithoutRepeats("solver", suite->seeds.solver);
 }
 
 /// The first and the last are always among them.

@@ -47,7 +47,10 @@ bool ReadGrid(const StrictObject& object, Grid* grid) {
   return object.Integers("control_points", Presence::kOptional, 1, kMaxControlPoints,
                          &grid->control_points) &&
          object.Integers("degree", Presence::kOptional, 1, kMaxDegree, &grid->degrees) &&
-         ReadKinds(object, &grid->kinds);
+         ReadKinds(object, &grid->kinds) &&
+         object.IsWithoutRepeats("control_points", grid->control_points) &&
+         object.IsWithoutRepeats("degree", grid->degrees) &&
+         object.IsWithoutRepeats("parameter_kind", grid->kinds);
 }
 
 /// What may be said of any problem beside its grid.
@@ -111,7 +114,7 @@ bool ReadBase(const StrictObject& object, const std::string& suite_path, BenchPr
   }
   if (sources.size() != 1) {
     return object.Complain("", "found " + std::to_string(sources.size()) +
-                                   " of them; allowed: one of problem, data, synthetic");
+                                   " of the keys problem, data, synthetic; allowed: one of them");
   }
   const std::vector<std::string> grid = {"control_points", "degree", "parameter_kind", "name"};
   std::vector<std::string> known = {sources[0]};
@@ -178,6 +181,9 @@ bool ReadBenchProblems(const StrictObject& entry, const std::string& suite_path,
     base.own_terms = base.entry.spec.terms;
     problems->push_back(std::move(base));
     return true;
+  }
+  if (!entry.IsObject()) {
+    return entry.Refuse("", "a name of the catalogue, a problem file, or an object");
   }
   Grid grid;
   if (!entry.HasOnly({"problem", "data", "synthetic", "name", "control_points", "degree",

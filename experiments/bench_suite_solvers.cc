@@ -46,7 +46,9 @@ bool ReadOptionValues(const StrictObject& options, const std::string& key,
     }
     values->push_back(std::move(value));
   }
-  return true;
+  std::vector<std::string> texts;
+  for (const PlacedValue& value : *values) texts.push_back(value.text);
+  return options.IsWithoutRepeats(key, texts);
 }
 
 /// Each of `solvers`, which are one with its options so far, with each value of the option.

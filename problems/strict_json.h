@@ -1,6 +1,7 @@
 #ifndef BATTEN_PROBLEMS_STRICT_JSON_H_
 #define BATTEN_PROBLEMS_STRICT_JSON_H_
 
+#include <algorithm>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -53,6 +54,18 @@ class StrictObject {
   bool IsNumber(double* number) const;
   /// The keys of the object that stands here, in alphabetical order.
   std::vector<std::string> Keys() const;
+
+  /// Whether no value of the list at `key`, as it was read, stands there twice; else the later one
+  /// is refused.
+  template <typename Value>
+  bool IsWithoutRepeats(const std::string& key, const std::vector<Value>& values) const {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto here = values.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::find(values.begin(), here, values[i]) == here) continue;
+      return Refuse(key + "/" + std::to_string(i), "each value once");
+    }
+    return true;
+  }
 
   /// Whether `key` holds a list.
   bool IsList(const std::string& key) const;

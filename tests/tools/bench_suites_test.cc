@@ -76,6 +76,20 @@ INSTANTIATE_TEST_SUITE_P(
                    (*s)["problems"][0]["control_points"] = {8, -3};
                  },
                  {"/problems/0/control_points/1: found -3"}},
+        BadSuite{"GridValueTwice",
+                 [](json* s) {
+                   (*s)["problems"][0]["control_points"] = {8, 12, 8};
+                 },
+                 {"/problems/0/control_points/2: found 8; allowed: each value once"}},
+        BadSuite{"KindTwice",
+                 [](json* s) {
+                   (*s)["problems"][0]["parameter_kind"] = {"free", "free"};
+                 },
+                 {"/problems/0/parameter_kind/1: found \"free\"; allowed: each value once"}},
+        BadSuite{"ProblemNumber",
+                 [](json* s) { (*s)["problems"][0] = 3; },
+                 {"/problems/0: found 3; allowed: a name of the catalogue, a problem file, or an "
+                  "object"}},
         BadSuite{"TooFewControlPoints",
                  [](json* s) { (*s)["problems"][1]["control_points"] = 2; },
                  {"/problems/1/control_points: found 2; allowed: more than the degree, 3"}},
@@ -92,6 +106,11 @@ INSTANTIATE_TEST_SUITE_P(
                    (*s)["solvers"][2]["options"] = {{"memory", {3, 0}}};
                  },
                  {"/solvers/2/options/memory/1: option memory of lbfgs is 0"}},
+        BadSuite{"SolverOptionTwice",
+                 [](json* s) {
+                   (*s)["solvers"][2]["options"] = {{"memory", {3, "3"}}};
+                 },
+                 {"/solvers/2/options/memory/1: found \"3\"; allowed: each value once"}},
         BadSuite{"SolverOptionType",
                  [](json* s) {
                    (*s)["solvers"][2]["options"] = {{"memory", {3, true}}};
@@ -145,12 +164,12 @@ INSTANTIATE_TEST_SUITE_P(
                  [](json* s) {
                    (*s)["seeds"] = {{"data", {2, 1, 2}}};
                  },
-                 {"/seeds/data/2: found 2; allowed: each number once"}},
+                 {"/seeds/data/2: found 2; allowed: each value once"}},
         BadSuite{"GapTwice",
                  [](json* s) {
                    (*s)["targets"] = {{"gaps", {0.1, 0.1}}};
                  },
-                 {"/targets/gaps/1: found 0.1; allowed: each number once"}},
+                 {"/targets/gaps/1: found 0.1; allowed: each value once"}},
         BadSuite{"Term",
                  [](json* s) { (*s)["terms"] = {"distance,fairnig"}; },
                  {"/terms/0", "did you mean fairing?"}},
@@ -174,14 +193,10 @@ INSTANTIATE_TEST_SUITE_P(
                  [](json* s) { (*s)["budgets"]["seconds"] = -1; },
                  {"/budgets/seconds: found -1; allowed: 0.001 to"}},
         BadSuite{"BudgetKey",
-                 [](json* s) {
-                   (*s)["budgets"] = {{"second", 1}};
-                 },
+                 [](json* s) { (*s)["budgets"] = {{"second", 1}}; },
                  {"/budgets", "did you mean seconds?"}},
         BadSuite{"ModeWord",
-                 [](json* s) {
-                   (*s)["rule"] = {{"mode", "rase"}};
-                 },
+                 [](json* s) { (*s)["rule"] = {{"mode", "rase"}}; },
                  {"/rule/mode", "did you mean race?"}},
         BadSuite{"OneIterate",
                  [](json* s) { (*s)["keep_iterates"] = 1; },
