@@ -51,7 +51,10 @@ int RunRegress(const std::vector<std::string>& positional, CommandOutput* output
         "share problems, terms and solvers",
         output);
   }
-  output->results = ReportText(report);
+  for (const BenchData* data : {&before, &now}) {
+    for (const std::string& bad : data->bad_lines) output->results += bad + "\n";
+  }
+  output->results += ReportText(report);
   if (report.regressions.empty()) return kDone;
   output->error = std::to_string(report.regressions.size()) +
                   " regressions, the first: " + report.regressions.front();

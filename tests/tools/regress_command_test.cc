@@ -33,6 +33,11 @@ TEST_F(Regress, FindsAWorseResult) {
   const Ended same = RunBatten({"regress", folder_ / "before", folder_ / "now"});
   EXPECT_EQ(same.status, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("15 runs in both"));
+  const std::string cells = ReadFile(folder_ / "now/cells.jsonl");
+  folder_.Write("now/cells.jsonl", cells + "no row\n");
+  EXPECT_THAT(RunBatten({"regress", folder_ / "before", folder_ / "now"}).out,
+              HasSubstr("now/cells.jsonl:61: found \"no row\"; allowed: "));
+  folder_.Write("now/cells.jsonl", cells);
   EditNow([](json& row) {
     if (row["solver"] == "cg" && row["problem"] == "wave") row["stop"] = "diverged";
   });
