@@ -4,7 +4,7 @@
 
 #include "experiments/bench_kinds.h"
 #include "experiments/bench_tables.h"
-#include "experiments/plot.h"
+#include "experiments/plot_file.h"
 
 namespace batten {
 namespace {
@@ -225,13 +225,6 @@ struct BenchFigure {
   int columns;  // where there are no basins, which stand in two
 };
 
-/// Where there is nothing to draw an older picture goes.
-FigureResult DrawOrRemove(const std::string& stem, const std::vector<PlotPanel>& panels,
-                          int columns, FileBatch* batch) {
-  if (panels.empty()) return NoFigure(stem, "", batch);
-  return DrawPlot(stem, panels, columns, batch);
-}
-
 }  // namespace
 
 std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const std::string& folder,
@@ -245,8 +238,9 @@ std::vector<FigureResult> DrawBenchFigures(const BenchResults& results, const st
                                {"runtime_distributions", &DistributionPanels, 1},
                                {"pair_profiles", &PairPanels, 2}};
     for (const BenchFigure& figure : all) {
-      figures.push_back(DrawOrRemove(folder + "/" + figure.name + "_" + kind, figure.panels(part),
-                                     HasBasins(part) ? 2 : figure.columns, batch));
+      figures.push_back(DrawPlotForReport(folder + "/" + figure.name + "_" + kind,
+                                          figure.panels(part), HasBasins(part) ? 2 : figure.columns,
+                                          batch));
     }
   }
   return figures;

@@ -11,6 +11,7 @@
 #include "experiments/report_bench.h"
 #include "experiments/report_cells.h"
 #include "experiments/report_curves.h"
+#include "experiments/report_plots.h"
 #include "experiments/report_tables.h"
 #include "experiments/report_traces.h"
 #include "problems/input_file.h"
@@ -249,6 +250,7 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
   const std::vector<std::string> skipped(has_cells && !IsBench() ? 1 : 0, "table.csv");
   if (!ReadReportTables(folder_, skipped, limits_, &tables, &notes_, error) ||
       !ReadReportPictures(folder_, limits_, &pictures, &notes_, error) ||
+      !ReadReportPlots(folder_, limits_, &pictures, &document->plots, &notes_, error) ||
       !ReadReproductionPages(folder_, &pages, error) ||
       !ReadReportCurves(folder_, cells_, limits_, &document->curves, &notes_, error) ||
       !TracesJson(&document->traces, error)) {

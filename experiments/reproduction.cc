@@ -10,6 +10,7 @@
 #include "experiments/bezier_paper.h"
 #include "experiments/build_info.h"
 #include "experiments/fairing_paper.h"
+#include "experiments/plot_file.h"
 #include "experiments/reproduction_page.h"
 #include "experiments/run.h"
 #include "problems/input_file.h"
@@ -70,8 +71,8 @@ bool WriteTables(const std::string& stamp, const ReproductionSpec& spec,
 bool DrawFigures(const ReproductionSpec& spec, ExperimentResult* result, FileBatch* batch,
                  std::string* error) {
   for (const ExperimentFigure& figure : result->experiment->figures) {
-    const FigureResult drawn =
-        DrawPlot(InFolder(spec, figure.name), figure.panels(result->tables), figure.columns, batch);
+    const FigureResult drawn = DrawPlotForReport(
+        InFolder(spec, figure.name), figure.panels(result->tables), figure.columns, batch);
     if (IsWriteError(drawn)) {
       *error = drawn.message;
       return false;

@@ -32,7 +32,7 @@ struct SourceClaim {
 };
 
 struct ExperimentFigure {
-  std::string name;     ///< Of the files: NAME.svg, .gp, .dat.
+  std::string name;     ///< Of the files: NAME.svg, .gp, .dat, .plot.json.
   std::string caption;  ///< What is to be seen.
   int columns = 2;      ///< Panels side by side.
   std::function<std::vector<PlotPanel>(const ExperimentTables&)> panels;

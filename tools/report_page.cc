@@ -24,6 +24,8 @@ std::string Filled(const std::string& page, const ReportDocument& document) {
       result += JsonForScript(document.traces);
     } else if (name == "curves") {
       result += JsonForScript(document.curves);
+    } else if (name == "plots") {
+      result += JsonForScript(document.plots);
     } else {
       result += ReportAsset(name);
     }

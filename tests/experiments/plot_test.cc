@@ -1,11 +1,13 @@
-#include "experiments/plot.h"
-
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "experiments/plot_file.h"
 #include "tests/problems/scratch_folder.h"
 
 namespace batten {
@@ -68,6 +70,53 @@ TEST(DrawPlot, LeavesRoomForTheGraphBesideLongNames) {
     // The legend's letters have 9 / 14 of the font's size, of its height 0.6 on average.
     EXPECT_GE(kCharacter * right, 9 * 0.6 * static_cast<double>(length)) << length;
   }
+}
+
+TEST(DrawPlotForReport, WritesThePanelsWithAllTheirDigitsAndTakesThemAway) {
+  const ScratchFolder folder;
+  PlotPanel panel;
+  panel.title = "T";
+  panel.log_y = true;
+  panel.x_names = {"rhino"};
+  panel.series.push_back({"cg", {1.0, 2.0}, {1.0 / 3.0, std::nan("")}});
+  panel.series.back().style = PlotSeries::Style::kCircles;
+  panel.series.back().color = 9;
+  const std::string stem = folder.path() / "a", file = stem + ".plot.json";
+  const auto draw = [&](const std::vector<PlotPanel>& panels) {
+    FileBatch batch;
+    std::string error;
+    DrawPlotForReport(stem, panels, 2, &batch);
+    EXPECT_TRUE(batch.Commit(&error)) << error;
+  };
+  draw({panel});
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+  EXPECT_EQ(json["format"], "batten.plot/1");
+  EXPECT_EQ(json["columns"], 2);
+  const nlohmann::json shown = json["panels"][0], series = shown["series"][0];
+  EXPECT_EQ(shown["log_y"], true);
+  EXPECT_EQ(shown["x_names"][0], "rhino");
+  EXPECT_EQ(series["style"], "circles");
+  EXPECT_EQ(series["color"], 9);
+  EXPECT_EQ(series["y"][0].get<double>(), 1.0 / 3.0);
+  EXPECT_TRUE(series["y"][1].is_null());
+  EXPECT_TRUE(std::filesystem::exists(stem + ".dat"));
+  draw({});
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(stem + ".dat"));
+}
+
+TEST(PlotSeriesStyle, HasAWordThatReadsBack) {
+  std::set<std::string> words;
+  for (int k = 0; k <= static_cast<int>(PlotSeries::Style::kOneOfMany); ++k) {
+    const auto style = static_cast<PlotSeries::Style>(k);
+    PlotSeries::Style read{};
+    EXPECT_TRUE(FromString(ToString(style), &read));
+    EXPECT_EQ(read, style);
+    words.insert(ToString(style));
+  }
+  EXPECT_EQ(words.size(), 6u);
+  PlotSeries::Style unused{};
+  EXPECT_FALSE(FromString("dots", &unused));
 }
 
 }  // namespace

@@ -332,6 +332,67 @@ TEST_F(ReportDocumentTest, LeavesOutTheDataOfAPictureThatIsTooLargeAndSaysSo) {
   EXPECT_THAT(Summary()["notes"][0].get<std::string>(), HasSubstr("a.svg: what it plots is not"));
 }
 
+constexpr char kPanel[] =
+    "{\"title\":\"T\",\"x_label\":\"x\",\"y_label\":\"y\",\"log_x\":false,\"log_y\":true,"
+    "\"equal_scale\":false,\"is_share\":false,\"legend\":true,\"x_names\":[],\"series\":[";
+
+std::string PlotWith(const std::string& series) {
+  return std::string("{\"format\":\"batten.plot/1\",\"columns\":1,\"panels\":[") + kPanel + series +
+         "]}]}";
+}
+
+TEST_F(ReportDocumentTest, ReadsThePanelsOfFiguresAndThinsLongLines) {
+  Write("t.csv", "a\n1\n");
+  Write("a.svg", "<svg/>");
+  Write("a.plot.json",
+        PlotWith("{\"label\":\"cg\",\"style\":\"dashed\",\"color\":3,\"x\":[1,2,3,4,5],"
+                 "\"y\":[0.5,null,0.25,0.1,0.123456789]}"));
+  Write("b.plot.json", PlotWith(""));
+  limits_.points_per_series = 3;
+  ASSERT_TRUE(Read()) << error_;
+  const json summary = Summary();
+  EXPECT_EQ(summary["pictures"][0]["panels"], json::parse("[\"T\"]"));
+  EXPECT_EQ(summary["pictures"][1]["name"], "b.svg");  // gnuplot was not there
+  EXPECT_THAT(summary["notes"][0].get<std::string>(), HasSubstr("a: the plot has 3 of 5 points"));
+  const json series = json::parse(document_.plots)["a"][0]["series"][0];
+  EXPECT_EQ(series["x"], json::parse("[1, 3, 5]"));
+  EXPECT_EQ(series["y"], json::parse("[0.5, 0.25, 0.123457]"));
+  EXPECT_EQ(series["num_points"], 5);
+  EXPECT_EQ(series["style"], "dashed");
+}
+
+TEST_F(ReportDocumentTest, ThinsAllPlotsWhereTogetherTheyAreTooMany) {
+  Write("t.csv", "a\n1\n");
+  const json numbers = std::vector<int>(1000, 1);
+  const json series = {
+      {"label", ""}, {"style", "line"}, {"color", 0}, {"x", numbers}, {"y", numbers}};
+  for (const char* name : {"a", "b", "c"}) {
+    Write(std::string(name) + ".plot.json", PlotWith(series.dump()));
+  }
+  limits_.plot_points = 1600;
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(json::parse(document_.plots)["c"][0]["series"][0]["x"].size(), 500u);
+  EXPECT_EQ(Summary()["notes"].size(), 3u);
+}
+
+TEST_F(ReportDocumentTest, NamesTheFieldOfAPlotThatIsWrong) {
+  Write("t.csv", "a\n1\n");
+  const std::pair<std::string, const char*> cases[] = {
+      {"[]", "a.plot.json: found no plot; allowed: an object of format batten.plot/1"},
+      {PlotWith("{\"label\":\"\",\"style\":\"dots\",\"color\":0,\"x\":[],\"y\":[]}"),
+       "a.plot.json: /panels/0/series/0/style: found another thing or nothing; allowed: line, "
+       "points"},
+      {PlotWith("{\"label\":\"\",\"style\":\"line\",\"color\":0,\"x\":[1],\"y\":[]}"),
+       "a.plot.json: /panels/0/series/0/x: found another thing or nothing; allowed: two lists"},
+      {"{\"format\":\"batten.plot/1\",\"panels\":[{\"title\":3}]}",
+       "a.plot.json: /panels/0/title: found another thing or nothing; allowed: text"}};
+  for (const auto& [text, message] : cases) {
+    Write("a.plot.json", text);
+    EXPECT_FALSE(Read()) << text;
+    EXPECT_THAT(error_, HasSubstr(message));
+  }
+}
+
 TEST_F(ReportDocumentTest, NamesTheRowOfATableThatIsTooShort) {
   Write("t.csv", "a,b\n1,2\n3\n");
   EXPECT_FALSE(Read());

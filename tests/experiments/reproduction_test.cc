@@ -83,7 +83,7 @@ TEST_F(Reproducing, WritesTablesFiguresAndPages) {
   EXPECT_EQ(fraction_, 0.5);
   EXPECT_EQ(text_, "squares: half");
   for (const char* name : {"squares.csv", "squares_roots.csv", "squares_figure.svg",
-                           "squares_figure.gp", "squares_figure.dat"}) {
+                           "squares_figure.gp", "squares_figure.dat", "squares_figure.plot.json"}) {
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / name)) << name;
   }
   const std::string page = Contents(folder_ / "numbers.md");

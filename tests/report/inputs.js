@@ -85,6 +85,6 @@ const inputs = {
     const isShown = value => lines.some(([, text]) => text === String(value) || (typeof value === 'number' &&
       [3, 4, 5].map(digits => value.toPrecision(digits)).concat(value.toFixed(3))
         .some(rounded => Number(rounded) === Number(text.replace('−', '-')))));
-    return near.some(({ datum }) => [datum.solver, datum.at ?? datum.px, datum.py].every(isShown));
+    return near.some(({ datum }) => [datum.series ?? datum.solver, datum.at ?? datum.px, datum.py].every(isShown));
   },
 };

@@ -29,7 +29,7 @@ const whenSeen = new IntersectionObserver(entries => {
 
 class Plot {
   // build(width): {spec, data, columns, caption} or {caption} where there is nothing to draw.
-  // `data` is what the spec's dataset "rows" holds, `columns` what of it is downloaded, by title.
+  // `data` is what the spec's dataset "rows" holds, `more` other datasets, `columns` what of it is downloaded, by title.
   // `controls` stand above it.
   constructor(title, build, controls = null) {
     Object.assign(this, { title, build, isSeen: false, isStale: true, isDone: Promise.resolve() });
@@ -82,7 +82,7 @@ class Plot {
     if (!this.drawn.spec) return;
     // Vega takes the description for the label of the view.
     const spec = { $schema: 'https://vega.github.io/schema/vega-lite/v6.json', ...this.drawn.spec,
-                   description: this.label, datasets: { rows: this.drawn.data } };
+                   description: this.label, datasets: { rows: this.drawn.data, ...this.drawn.more } };
     this.result = await vegaEmbed(this.view, spec, {
       actions: false, config: vegaConfig(), renderer: 'canvas', ast: false,
       tooltip: { theme: scheme === 'dark' ? 'dark' : 'light' },
@@ -168,7 +168,7 @@ class Plot {
 const axisOf = (field, title, isLog, extra = {}) => ({
   field, type: 'quantitative', title,
   scale: { ...(isLog ? { type: 'log', nice: false } : { zero: false }), ...extra.scale },
-  axis: { format: isLog && field === 'py' ? '~e' : '~g' },
+  axis: { format: isLog && field === 'py' ? '~e' : '.8~g' },
 });
 // A text in lines that are at most so many pixels wide, unless a word is wider. No word ends it alone.
 const ruler = document.createElement('canvas').getContext('2d');

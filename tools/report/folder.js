@@ -12,7 +12,7 @@ function addFolderSections() {
   }
   if (pictures.size > 0) {
     addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
-      pictureOf(picture, 'As drawn when the folder was written. Data: what is plotted, in blocks, a line each.'))));
+      figureOf(picture, 'As drawn when the folder was written. Data: what is plotted, in blocks, a line each.'))));
   }
   if (tables.size > 0) {
     addSection('Tables', element('div', {}, ...[...tables.values()].map(table =>
@@ -43,7 +43,7 @@ function addPage(page, pictures, tables) {
       element('p', {}, verdict(claim), ': ' + claim.because),
       element('p', { class: 'quiet' }, 'Rule: ' + claim.rule)]),
     ...section.pictures.filter(({ name }) => pictures.has(name)).map(({ name, caption }) => {
-      const figure = pictureOf(pictures.get(name), caption);
+      const figure = figureOf(pictures.get(name), caption);
       pictures.delete(name);
       return figure;
     }),
