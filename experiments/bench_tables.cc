@@ -124,12 +124,39 @@ CsvTable RoundedTable(const CsvTable& table) {
   return rounded;
 }
 
-bool Write(const CsvTable& table, const std::string& stem, const std::string& caption,
-           FileBatch* batch, std::string* error) {
+/// What of a table is set in LaTeX; the CSV file has all of it.
+struct LatexPart {
+  std::vector<std::string> by;  // a float each
+  std::vector<std::string> shown;
+};
+const LatexPart& RunPart() {
+  static const auto& part =
+      *new LatexPart{{"problem", "terms", "data_seed", "start_seed"},
+                     {"solver", "seed", "stop", "verified", "iterations", "evaluations", "energy",
+                      "gap", "gradient_norm", "basin", "failed", "seconds", "work_units"}};
+  return part;
+}
+const LatexPart& SolverPart() {
+  static const auto& part =
+      *new LatexPart{{"target", "kind"},
+                     {"solver", "instances", "not_run", "solved", "best_basin", "of_basins",
+                      "evaluations", "work_units", "seconds"}};
+  return part;
+}
+const LatexPart& PairPart() {
+  static const auto& part = *new LatexPart{{"target", "cost"},
+                                           {"first", "second", "instances", "first_less", "equal",
+                                            "second_less", "neither", "first_at_2", "second_at_2"}};
+  return part;
+}
+
+bool Write(const CsvTable& table, const LatexPart& part, const std::string& stem,
+           const std::string& caption, FileBatch* batch, std::string* error) {
   const CsvTable rounded = RoundedTable(table);
   return batch->Write(stem + ".csv", table.ToCsv(), error) != nullptr &&
          batch->Write(stem + ".md", TableMarkdown(rounded), error) != nullptr &&
-         batch->Write(stem + ".tex", TableLatex(rounded, caption), error) != nullptr;
+         batch->Write(stem + ".tex", TablesLatex(rounded, caption, part.by, part.shown), error) !=
+             nullptr;
 }
 
 }  // namespace
@@ -259,11 +286,12 @@ bool WriteBenchTables(const BenchResults& results, const std::string& folder, Fi
       "Solvers that apply to no instance of a kind, or ran on none, have no row "
       "there.\n\n";
   for (const std::string& note : results.notes) notes += "- " + MarkdownText(note) + "\n";
-  return Write(RunTable(results), folder + "/table", results.suite + ": all runs", batch, error) &&
-         Write(SolverTable(results), folder + "/solvers", results.suite + ": by target and solver",
-               batch, error) &&
-         Write(PairTable(results), folder + "/pairs", results.suite + ": pairs of solvers", batch,
+  return Write(RunTable(results), RunPart(), folder + "/table", results.suite + ": all runs", batch,
                error) &&
+         Write(SolverTable(results), SolverPart(), folder + "/solvers",
+               results.suite + ": by target and solver", batch, error) &&
+         Write(PairTable(results), PairPart(), folder + "/pairs",
+               results.suite + ": pairs of solvers", batch, error) &&
          batch->Write(folder + "/notes.md", notes, error) != nullptr;
 }
 

@@ -1,6 +1,8 @@
 #include "experiments/table_text.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,25 @@ std::string Replaced(const std::string& text,
     result += found == replacements.end() ? std::string(1, c) : found->second;
   }
   return result;
+}
+
+std::string LatexFloat(const CsvTable& table, const std::vector<std::string>& columns,
+                       const std::vector<std::size_t>& rows, const std::string& caption) {
+  std::string text =
+      "\\begin{table*}\n\\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n\\caption{" +
+      LatexText(caption) + "}\n\\begin{tabular}{" + std::string(columns.size(), 'l') +
+      "}\n\\toprule\n";
+  for (const std::string& column : columns) {
+    text += (&column == &columns.front() ? "" : " & ") + LatexText(column);
+  }
+  text += " \\\\\n\\midrule\n";
+  for (const std::size_t row : rows) {
+    for (const std::string& column : columns) {
+      text += (&column == &columns.front() ? "" : " & ") + LatexNumber(table.Text(row, column));
+    }
+    text += " \\\\\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
 }
 
 }  // namespace
@@ -75,23 +96,44 @@ std::string TableMarkdown(const CsvTable& table) {
   return text;
 }
 
-std::string TableLatex(const CsvTable& table, const std::string& caption) {
-  std::string text = "% Needs \\usepackage{booktabs}.\n\\begin{table*}\n\\centering\\scriptsize\n";
-  text += "\\caption{" + LatexText(caption) + "}\n\\begin{tabular}{" +
-          std::string(table.columns().size(), 'l') + "}\n\\toprule\n";
-  std::string line;
-  for (const std::string& column : table.columns()) {
-    line += (line.empty() ? "" : " & ") + LatexText(column);
-  }
-  text += line + " \\\\\n\\midrule\n";
+std::string TablesLatex(const CsvTable& table, const std::string& caption,
+                        const std::vector<std::string>& by, const std::vector<std::string>& shown) {
+  std::vector<std::string> columns;
+  std::copy_if(shown.begin(), shown.end(), std::back_inserter(columns), [&](const auto& column) {
+    const std::vector<std::string> texts = table.Distinct(column);
+    return std::any_of(texts.begin(), texts.end(), [](const auto& text) { return !text.empty(); });
+  });
+  // In the order of their first rows.
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<std::size_t>> rows_of;
   for (std::size_t row = 0; row < table.num_rows(); ++row) {
-    line.clear();
-    for (std::size_t c = 0; c < table.columns().size(); ++c) {
-      line += (c > 0 ? " & " : "") + LatexNumber(table.Text(row, table.columns()[c]));
+    std::string name;
+    for (const std::string& column : by) {
+      const std::string& text = table.Text(row, column);
+      if (!text.empty()) name += (name.empty() ? "" : ", ") + column + " " + text;
     }
-    text += line + " \\\\\n";
+    std::vector<std::size_t>& rows = rows_of[name];
+    if (rows.empty()) names.push_back(name);
+    rows.push_back(row);
   }
-  return text + "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
+  std::string text = "% Needs \\usepackage{booktabs}.\n";
+  // LaTeX holds back no more than 18 floats.
+  constexpr int kMostHeld = 10;
+  int num_floats = 0;
+  for (const std::string& name : names) {
+    const std::vector<std::size_t>& rows = rows_of[name];
+    for (std::size_t begin = 0; begin < rows.size(); begin += kMostLatexRows) {
+      if (num_floats > 0 && num_floats % kMostHeld == 0) text += "\\clearpage\n";
+      ++num_floats;
+      const std::string of = (name.empty() ? "" : ": " + name) + (begin > 0 ? ", continued" : "");
+      text += LatexFloat(table, columns,
+                         {rows.begin() + static_cast<std::ptrdiff_t>(begin),
+                          rows.begin() + static_cast<std::ptrdiff_t>(
+                                             std::min(begin + kMostLatexRows, rows.size()))},
+                         caption + of);
+    }
+  }
+  return text;
 }
 
 }  // namespace batten

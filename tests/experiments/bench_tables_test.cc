@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <tuple>
 
+#include "experiments/table_text.h"
 #include "tests/experiments/hand_made_bench.h"
 
 namespace batten {
@@ -340,6 +342,58 @@ TEST(BenchTargets, AGapWithinTheRoundingOfTheEnergyIsNone) {
   EXPECT_TRUE(CostsOf(results, 1, BenchCost::kEvaluations, nullptr).empty());
   EXPECT_THAT(results.notes, Contains(HasSubstr("gap 1e-07: left out on 2 of 2 instances")));
   EXPECT_THAT(results.notes, Contains(HasSubstr("gap 1e-06: left out on 1 of 2 instances")));
+}
+
+/// How often `part` stands in `text`.
+int CountOf(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(TablesLatex, SetsAFloatForEachGroupAndForAsManyRowsAsAPageHas) {
+  CsvTable table({"target", "solver", "seconds", "basin", "long"});
+  for (std::size_t k = 0; k <= kMostLatexRows; ++k) {
+    table.AddRow({"gap_1", "s" + std::to_string(k), "1.5e-03", "", "words"});
+  }
+  table.AddRow({"gap_2", "cg", "2", "", "words"});
+  const std::string text = TablesLatex(table, "a_b", {"target"}, {"solver", "seconds", "basin"});
+  EXPECT_EQ(CountOf(text, "\\begin{table*}"), 3);
+  EXPECT_EQ(CountOf(text, "\\end{table*}"), 3);
+  EXPECT_THAT(text, HasSubstr("\\caption{a\\_b: target gap\\_1}"));
+  EXPECT_THAT(text, HasSubstr("\\caption{a\\_b: target gap\\_1, continued}"));
+  EXPECT_THAT(text, HasSubstr("\\caption{a\\_b: target gap\\_2}"));
+  // No column of basins, of which there are none, and none that was not asked for.
+  EXPECT_EQ(CountOf(text, "solver & seconds \\\\\n"), 3);
+  EXPECT_EQ(CountOf(text, "\\begin{tabular}{ll}"), 3);
+  EXPECT_EQ(CountOf(text, "s50 & $1.5\\cdot10^{-3}$ \\\\\n"), 1);
+  EXPECT_EQ(CountOf(text, "words"), 0);
+}
+
+TEST(TablesLatex, LeavesNoMoreFloatsWaitingThanLatexHolds) {
+  CsvTable table({"target", "solver"});
+  for (int k = 0; k < 25; ++k) table.AddRow({std::to_string(k), "cg"});
+  EXPECT_EQ(CountOf(TablesLatex(table, "t", {"target"}, {"solver"}), "\\clearpage"), 2);
+}
+
+TEST(BenchTables, OfRunsLatexShowsThoseOfAnInstanceTogether) {
+  HandMadeBench bench({0.1});
+  for (const char* problem : {"p", "q"}) {
+    bench.AddInstance(problem, 0.0);
+    bench.AddRun(problem, "cg", {{1, 0.0, 10.0}, {5, 0.1, 0.5}});
+    bench.AddRun(problem, "gim", {{1, 0.0, 10.0}, {9, 0.1, 0.5}});
+  }
+  FileBatch batch;
+  std::string error;
+  ASSERT_TRUE(WriteBenchTables(bench.Results(), bench.folder().path(), &batch, &error)) << error;
+  ASSERT_TRUE(batch.Commit(&error)) << error;
+  std::ifstream file(bench.folder().path() / "table.tex");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_EQ(CountOf(text, "\\begin{table*}"), 2);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(CountOf(line, " & "), 12) << line;
 }
 
 TEST(BenchTables, FilesHoldAllDigitsAndForPeopleFour) {
