@@ -43,7 +43,7 @@ bool RunOffsets(const ExperimentRun& run, ExperimentTables* tables, std::string*
   for (int k = 0; k <= kSteps && !InterruptRequested(); ++k) {
     const double offset = 0.5 * k / kSteps;
     if (run.progress) run.progress(static_cast<double>(k) / (kSteps + 1), "offsets");
-    ProblemRuns problem("nine_points", NinePoints(offset), run.repetitions);
+    ProblemRuns problem("nine_points", NinePoints(offset), run.repetitions, run.recorder);
     for (const StopRule& rule : PaperRules()) {
       CsvTable rows(RunColumns());
       for (const char* solver : {kGim, kLbfgs, "cg", "banded_cholesky"}) {

@@ -36,13 +36,25 @@ std::shared_ptr<const Problem> FifteenPoints(bool free) {
   return CheckedFit(std::move(data), std::move(spec));
 }
 
-void AddRun(const char* parameters, const char* solver, ExperimentTables* tables) {
-  const std::shared_ptr<const Problem> problem = FifteenPoints(std::string(parameters) == kFree);
+void AddRun(const ExperimentRun& run, const std::shared_ptr<const Problem>& problem,
+            const char* parameters, const char* solver, ExperimentTables* tables) {
   RunResult result;
   std::string error;
   NameSpec name;
   CHECK(ParseNameSpec(solver, &name, &error)) << error;
   CHECK(Run(*problem, name, NativeSpec(1e-6), &result, &error)) << error;
+  if (run.recorder != nullptr) {
+    const DirectReference reference(*problem);
+    RecordedRun recorded;
+    recorded.label = std::string("fifteen_points, ") + parameters;
+    recorded.problem = problem;
+    recorded.reference = &reference;
+    recorded.solver = solver;
+    recorded.spec = NativeSpec(1e-6);
+    recorded.seconds = result.seconds;
+    recorded.setup_seconds = result.setup_seconds;
+    run.recorder->Add(recorded, &result);
+  }
   if (!result.skipped.empty() || !result.x.allFinite()) return;
   const Points curve = SampledCurve(*problem, result.x);
   (*tables)[""].AddRow({parameters, solver, ToString(result.outcome.reason),
@@ -55,12 +67,13 @@ void AddRun(const char* parameters, const char* solver, ExperimentTables* tables
   }
 }
 
-bool RunBoth(const ExperimentRun& /*run*/, ExperimentTables* tables, std::string* /*error*/) {
+bool RunBoth(const ExperimentRun& run, ExperimentTables* tables, std::string* /*error*/) {
   (*tables)[""] =
       CsvTable({"parameters", "solver", "status", "iterations", "energy", "foot_energy", "length"});
   (*tables)["curves"] = CsvTable({"parameters", "solver", "x", "y"});
-  for (const char* solver : {kLbfgs, kDirect}) AddRun(kFixed, solver, tables);
-  for (const char* solver : {kLbfgs, "newton", kBest}) AddRun(kFree, solver, tables);
+  const auto fixed = FifteenPoints(false), free = FifteenPoints(true);
+  for (const char* solver : {kLbfgs, kDirect}) AddRun(run, fixed, kFixed, solver, tables);
+  for (const char* solver : {kLbfgs, "newton", kBest}) AddRun(run, free, kFree, solver, tables);
   return true;
 }
 

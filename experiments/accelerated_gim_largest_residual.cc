@@ -74,7 +74,7 @@ bool RunResiduals(const ExperimentRun& run, ExperimentTables* tables, std::strin
     done += 1.0;
     const std::shared_ptr<const Problem> problem = CatalogueProblem(name, error);
     if (problem == nullptr) return false;
-    ProblemRuns on(name, problem, run.repetitions);
+    ProblemRuns on(name, problem, run.repetitions, run.recorder);
     for (RunSpec spec : {NativeSpec(1e-6), RaceSpec(1e-10)}) {
       spec.keep_iterates = true;
       for (const char* solver : {"gim", "lspia", "lbfgs", "banded_qr"}) {

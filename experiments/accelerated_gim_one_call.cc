@@ -46,7 +46,7 @@ bool RunFitsInOneCall(const ExperimentRun& run, ExperimentTables* tables, std::s
   for (const FitInOneCall& c : cases) {
     if (run.progress) run.progress(done / static_cast<double>(cases.size()), c.name);
     done += 1.0;
-    ProblemRuns on(c.name, c.problem, run.repetitions);
+    ProblemRuns on(c.name, c.problem, run.repetitions, run.recorder);
     CsvTable unused(RunColumns());
     const RunResult direct = on.Run("banded_qr", RaceSpec(1e-10), &unused);
     for (const RunSpec& spec : {NativeSpec(1e-6), RaceSpec(1e-10)}) {

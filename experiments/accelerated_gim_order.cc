@@ -95,7 +95,7 @@ bool RunOrders(const ExperimentRun& run, ExperimentTables* tables, std::string* 
     done += 1.0;
     std::shared_ptr<const Problem> problem = CatalogueProblem(name, error);
     if (problem == nullptr) return false;
-    ProblemRuns on(name, problem, run.repetitions);
+    ProblemRuns on(name, problem, run.repetitions, run.recorder);
     std::vector<std::string> solvers(std::begin(kSolvers), std::end(kSolvers));
     if (name == kThrough) {
       solvers.insert(solvers.end(), std::begin(kPairedSolvers), std::end(kPairedSolvers));

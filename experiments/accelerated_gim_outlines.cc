@@ -62,7 +62,7 @@ bool RunOutlines(const ExperimentRun& run, ExperimentTables* tables, std::string
     done += 1.0;
     std::shared_ptr<const Problem> problem = CatalogueProblem(published.problem, error);
     if (problem == nullptr) return false;
-    ProblemRuns on(published.problem, problem, run.repetitions);
+    ProblemRuns on(published.problem, problem, run.repetitions, run.recorder);
     AddDataPoints(*problem, &curves);
     for (const StopRule& rule : PaperRules()) {
       for (const char* solver : {"lspia", "lspia/step=max_column", "lspia/step=optimal", "lbfgs",

@@ -37,8 +37,8 @@ bool RunSizes(const ExperimentRun& run, ExperimentTables* tables, std::string* /
                    std::to_string(m) + " points, " + std::to_string(size.n) + " control points");
     }
     done += 1.0;
-    ProblemRuns on("loop", LoopProblem(m, size.n, kLoopSize),
-                   m > kManyPoints ? 1 : run.repetitions);
+    ProblemRuns on("loop", LoopProblem(m, size.n, kLoopSize), m > kManyPoints ? 1 : run.repetitions,
+                   run.recorder);
     CsvTable rows(RunColumns());
     for (RunSpec spec : {NativeSpec(1e-6), RaceSpec(1e-6)}) {
       if (spec.mode == Mode::kNative && m > kManyPoints) continue;

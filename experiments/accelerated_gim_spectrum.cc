@@ -153,11 +153,11 @@ bool RunParameters(const ExperimentRun& run, ExperimentTables* tables, std::stri
     if (run.progress) run.progress(done / static_cast<double>(all.size()), parameters.name);
     done += 1.0;
     ProblemRuns on("rhino_interpolation", AtParameters(*outline, parameters.values),
-                   run.repetitions);
+                   run.repetitions, run.recorder);
     AddRuns(parameters.name,
             {"gim", "weighted_pia", kOptimalLspia, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
   }
-  ProblemRuns on("dolphin", dolphin, run.repetitions);
+  ProblemRuns on("dolphin", dolphin, run.repetitions, run.recorder);
   AddRuns("the dolphin as it is", {kOptimalLspia, "jacobi_pia/w=1", "lbfgs", "cg"}, &on, &runs);
   return true;
 }

@@ -36,7 +36,7 @@ bool RunCurves(const ExperimentRun& run, ExperimentTables* tables, std::string* 
     const std::string name = "curve " + std::to_string(number + 1);
     if (run.progress) run.progress(static_cast<double>(number) / kNumCurves, name);
     const PublishedCurve curve = MakePublishedCurve(number);
-    ProblemRuns on(name, curve.problem, run.repetitions);
+    ProblemRuns on(name, curve.problem, run.repetitions, run.recorder);
     CsvTable unused(RunColumns());
     const Eigen::VectorXd answer = on.Run("banded_qr", RaceSpec(1e-10), &unused).x;
     const StopRule rules[] = {{kPublishedRule, RaceSpec(kPublishedTolerance)},

@@ -36,7 +36,7 @@ bool RunCases(const ExperimentRun& run, ExperimentTables* tables, std::string* e
     if (InterruptRequested()) return true;
     if (run.progress) run.progress(done / static_cast<double>(cases.size()), c.name);
     done += 1.0;
-    ProblemRuns on(c.name, c.problem, run.repetitions);
+    ProblemRuns on(c.name, c.problem, run.repetitions, run.recorder);
     for (const StopRule& rule : PaperRules()) {
       CsvTable rows(RunColumns());
       on.Run("lbfgs", rule.spec, &rows);

@@ -26,7 +26,7 @@ bool RunUnits(const ExperimentRun& run, ExperimentTables* tables, std::string* e
     for (const double factor : kFactors) {
       if (run.progress) run.progress(done / (2.0 * std::size(kFactors)), name);
       done += 1.0;
-      ProblemRuns on(name, InOtherUnits(*outline, factor), run.repetitions);
+      ProblemRuns on(name, InOtherUnits(*outline, factor), run.repetitions, run.recorder);
       for (const StopRule& rule : PaperRules()) {
         for (const char* solver : {"lspia", "lbfgs", "cg"}) {
           if (InterruptRequested()) return true;

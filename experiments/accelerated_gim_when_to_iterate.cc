@@ -27,8 +27,8 @@ RunResult AddRun(const std::string& reason, const std::string& setting, const st
 }
 
 /// Iterations until the gap is reached, then the time of a run of so many.
-void RunEarly(int repetitions, CsvTable* table) {
-  ProblemRuns on("loop", LoopProblem(1'000'000, 10'000, kLoopSize), repetitions);
+void RunEarly(const ExperimentRun& run, CsvTable* table) {
+  ProblemRuns on("loop", LoopProblem(1'000'000, 10'000, kLoopSize), run.repetitions, run.recorder);
   AddRun(kEarly, "exact", kCholesky, RaceSpec(1e-10), &on, table);
   for (const char* solver : {"cg", "lbfgs", "lspia"}) {
     CsvTable unused(RunColumns());
@@ -50,7 +50,7 @@ void RunEarly(int repetitions, CsvTable* table) {
 
 /// The answer of one data set as the start for another, every point of which has moved by up to
 /// `moved` sizes.
-void RunWarm(int repetitions, CsvTable* table) {
+void RunWarm(const ExperimentRun& run, CsvTable* table) {
   const std::shared_ptr<const Problem> before = LoopProblem(1'000'000, 10'000, kLoopSize);
   const CurveFit& fit = *before->curve_fit();
   RunResult last;
@@ -66,7 +66,7 @@ void RunWarm(int repetitions, CsvTable* table) {
     data.points +=
         moved * kLoopSize * Eigen::Map<const Points>(noise.data(), data.points.rows(), 2);
     const std::shared_ptr<const Problem> now = CheckedFit(std::move(data), fit.spec());
-    ProblemRuns on("loop", now, repetitions);
+    ProblemRuns on("loop", now, run.repetitions, run.recorder);
     const std::string setting = "moved by " + NumberText(moved);
     AddRun(kWarm, setting + " (direct)", kCholesky, RaceSpec(1e-10), &on, table);
     // One |g| for both: 1e-6 of that at the cold start.
@@ -97,9 +97,9 @@ std::shared_ptr<const Problem> Tied(int n) {
   return tied;
 }
 
-void RunTied(int repetitions, CsvTable* table) {
+void RunTied(const ExperimentRun& run, CsvTable* table) {
   for (const int n : {100, 400, 1600}) {
-    ProblemRuns on("tied_loop", Tied(n), n > 1000 ? 1 : repetitions);
+    ProblemRuns on("tied_loop", Tied(n), n > 1000 ? 1 : run.repetitions, run.recorder);
     const std::string setting = "n = " + std::to_string(n);
     for (const char* solver : {kCholesky, "cg", "lbfgs"}) {
       if (InterruptRequested()) return;
@@ -131,15 +131,16 @@ std::shared_ptr<const Problem> BelowALine(const Problem& loop, const Eigen::Vect
 }
 
 /// Direct solvers refuse bounds: the multiple is of banded_cholesky's time without them.
-void RunBounds(int repetitions, CsvTable* table) {
+void RunBounds(const ExperimentRun& run, CsvTable* table) {
   for (const int n : {100, 400, 1600}) {
     if (InterruptRequested()) return;
     const std::shared_ptr<const Problem> loop = LoopProblem(4 * n, n, kLoopSize);
-    ProblemRuns without("loop", loop, repetitions);
+    ProblemRuns without("loop", loop, run.repetitions, run.recorder);
     const RunResult direct = AddRun(kBounds, "n = " + std::to_string(n) + " (without)", kCholesky,
                                     RaceSpec(1e-8), &without, table);
     int held = 0;
-    ProblemRuns on("bounded_loop", BelowALine(*loop, direct.x, 0.8, &held), repetitions);
+    ProblemRuns on("bounded_loop", BelowALine(*loop, direct.x, 0.8, &held), run.repetitions,
+                   run.recorder);
     const std::string setting =
         "n = " + std::to_string(n) + " (" + std::to_string(held) + " above)";
     for (const char* solver : {kCholesky, "lbfgs", "ceres_lm"}) {
@@ -158,13 +159,13 @@ bool RunAll(const ExperimentRun& run, ExperimentTables* tables, std::string* /*e
     if (run.progress) run.progress(fraction, reason);
   };
   tell(0.0, kEarly);
-  RunEarly(run.repetitions, &runs);
+  RunEarly(run, &runs);
   tell(0.3, kWarm);
-  RunWarm(run.repetitions, &runs);
+  RunWarm(run, &runs);
   tell(0.7, kTied);
-  RunTied(run.repetitions, &runs);
+  RunTied(run, &runs);
   tell(0.9, kBounds);
-  RunBounds(run.repetitions, &runs);
+  RunBounds(run, &runs);
   return true;
 }
 

@@ -41,7 +41,7 @@ bool RunExamples(const ExperimentRun& run, ExperimentTables* tables, std::string
   double done = 0.0;
   for (const PaperExample& example : examples) {
     const FreeCase on = {example.name, "circle",
-                         FreeFit(example.points, example.control_points, "circle")};
+                         FreeFit(example.points, example.control_points, "circle"), run.recorder};
     AddCurve(example.name, kData, example.points, &curves);
     for (const std::string& solver : solvers) {
       if (InterruptRequested()) return true;

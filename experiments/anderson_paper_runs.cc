@@ -106,6 +106,24 @@ std::vector<KeptIterate> Thinned(const Problem& problem, const RunResult& result
   return kept;
 }
 
+void KeepRun(const FreeCase& on, const std::string& solver, const RunSpec& spec, int repetitions,
+             RunResult* result) {
+  if (on.recorder == nullptr) return;
+  const DirectReference reference(*on.problem);  // of free parameters there is none
+  RecordedRun run;
+  run.label = on.example + ", from " + on.start;
+  run.problem = on.problem;
+  run.reference = &reference;
+  run.solver = solver;
+  run.spec = spec;
+  if (result->skipped.empty()) {
+    run.seconds = result->seconds;
+    run.setup_seconds = result->setup_seconds;
+  }
+  run.repetitions = repetitions;
+  on.recorder->Add(run, result);
+}
+
 /// Share of accelerated points that were rejected, from the run's note "135 of 294, ..."; NaN.
 double RejectedShare(const RunResult& result) {
   for (const auto& [name, value] : result.notes) {
@@ -181,6 +199,7 @@ double PolygonLength(const Points& polygon) {
 RunResult RunFree(const FreeCase& on, const std::string& solver, const RunSpec& spec,
                   int repetitions, CsvTable* runs, CsvTable* traces) {
   RunResult result = MedianRun(*on.problem, Parsed(solver), spec, repetitions);
+  KeepRun(on, solver, spec, repetitions, &result);
   const CurveFit& fit = *on.problem->curve_fit();
   std::vector<std::string> row = {on.example, on.start, solver,
                                   std::to_string(fit.parameters().size()),

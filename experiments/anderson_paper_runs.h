@@ -7,6 +7,7 @@
 
 #include "experiments/csv_table.h"
 #include "experiments/run.h"
+#include "experiments/run_recorder.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -54,6 +55,7 @@ struct FreeCase {
   std::string example;
   std::string start;
   std::shared_ptr<const Problem> problem;
+  RunRecorder* recorder = nullptr;  ///< Keeps the runs; may be null.
 };
 
 /// The race of the introduction.

@@ -41,7 +41,8 @@ bool RunStarts(const ExperimentRun& run, ExperimentTables* tables, std::string* 
       const FreeCase on = {example.name, start,
                            start == kStarts[2]
                                ? FromDisturbedCircle(example)
-                               : FreeFit(example.points, example.control_points, start)};
+                               : FreeFit(example.points, example.control_points, start),
+                           run.recorder};
       for (const char* solver : kDrawnMethods) {
         if (InterruptRequested()) return true;
         if (run.progress) run.progress(done / all, example.name + " " + start + " " + solver);

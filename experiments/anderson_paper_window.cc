@@ -22,7 +22,7 @@ bool RunWindows(const ExperimentRun& run, ExperimentTables* tables, std::string*
   double done = 0.0;
   for (const PaperExample& example : examples) {
     const FreeCase on = {example.name, "circle",
-                         FreeFit(example.points, example.control_points, "circle")};
+                         FreeFit(example.points, example.control_points, "circle"), run.recorder};
     for (int window = 1; window <= kMostWindow; ++window) {
       if (InterruptRequested()) return true;
       const std::string text = std::to_string(window);

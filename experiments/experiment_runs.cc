@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "experiments/comparison.h"
 #include "problems/catalogue.h"
@@ -52,10 +53,12 @@ std::vector<std::string> TraceColumns() {
   return {"problem", "mode", "solver", "iteration", "energy", "gradient_norm", "step_norm", "gap"};
 }
 
-ProblemRuns::ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions)
+ProblemRuns::ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions,
+                         RunRecorder* recorder)
     : label_(std::move(label)),
       problem_(std::move(problem)),
       repetitions_(repetitions),
+      recorder_(recorder),
       reference_(*problem_) {}
 
 double ProblemRuns::cholesky_seconds() {
@@ -64,7 +67,10 @@ double ProblemRuns::cholesky_seconds() {
   cholesky_seconds_ = std::numeric_limits<double>::quiet_NaN();
   RunSpec spec;
   spec.keep_trace = false;
+  // A measure of time and no run of the experiment.
+  RunRecorder* const recorder = std::exchange(recorder_, nullptr);
   const RunResult run = Run("banded_cholesky", spec, &unused);
+  recorder_ = recorder;
   if (run.skipped.empty()) cholesky_seconds_ = unused.Number(0, "seconds");
   return cholesky_seconds_;
 }
@@ -90,13 +96,29 @@ double ProblemRuns::MedianSeconds(const NameSpec& solver, const RunSpec& spec, d
   return seconds.empty() ? first : Median(seconds);
 }
 
+void ProblemRuns::Record(const std::string& solver, const RunSpec& spec, double seconds,
+                         double cholesky, RunResult* result) const {
+  if (recorder_ == nullptr) return;
+  RecordedRun run;
+  run.label = label_;
+  run.problem = problem_;
+  run.reference = &reference_;
+  run.solver = solver;
+  run.spec = spec;
+  run.seconds = seconds;
+  run.times_cholesky = seconds / cholesky;
+  run.repetitions = repetitions_;
+  recorder_->Add(run, result);
+}
+
 RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTable* table,
                            CsvTable* traces) {
   NameSpec name;
   std::string error;
   CHECK(ParseNameSpec(solver, &name, &error)) << error;
   RunSpec first = spec;
-  first.keep_iterates = spec.keep_iterates || traces != nullptr;
+  const bool is_kept = recorder_ != nullptr && RunRecorder::WantsIterates(*problem_, spec);
+  first.keep_iterates = spec.keep_iterates || traces != nullptr || is_kept;
   first.keep_trace = spec.keep_trace || traces != nullptr;
   RunResult result;
   CHECK(batten::Run(*problem_, name, first, &result, &error)) << error;
@@ -109,6 +131,7 @@ RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTa
     row.emplace_back("skipped");
     row.resize(RunColumns().size());
     table->AddRow(row);
+    Record(solver, spec, NAN, NAN, &result);
     return result;
   }
   const double median = MedianSeconds(name, spec, result.seconds);
@@ -119,6 +142,7 @@ RunResult ProblemRuns::Run(const std::string& solver, const RunSpec& spec, CsvTa
                          NumberText(result.energy), NumberText(result.gradient_norm),
                          NumberText(Gap(result.x, spec)), NumberText(result.observed_rate)});
   table->AddRow(row);
+  Record(solver, spec, median, cholesky, &result);
   if (traces == nullptr) return result;
   for (std::size_t k = 0; k < result.trace.size(); ++k) {
     const TraceRow& at = result.trace[k];

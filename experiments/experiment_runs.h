@@ -8,6 +8,7 @@
 #include "experiments/comparison_reference.h"
 #include "experiments/csv_table.h"
 #include "experiments/run.h"
+#include "experiments/run_recorder.h"
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -38,8 +39,9 @@ bool RuleConcerns(const StopRule& rule, const std::string& solver);
 class ProblemRuns {
  public:
   /// Times are medians of `repetitions` runs behind one that is not counted. `label` stands in the
-  /// column "problem".
-  ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions);
+  /// column "problem". `recorder`, if not null, keeps the runs.
+  ProblemRuns(std::string label, std::shared_ptr<const Problem> problem, int repetitions,
+              RunRecorder* recorder = nullptr);
 
   const Problem& problem() const { return *problem_; }
   const DirectReference& reference() const { return reference_; }
@@ -54,10 +56,13 @@ class ProblemRuns {
  private:
   double Gap(const Eigen::VectorXd& x, const RunSpec& spec) const;
   double MedianSeconds(const NameSpec& solver, const RunSpec& spec, double first) const;
+  void Record(const std::string& solver, const RunSpec& spec, double seconds, double cholesky,
+              RunResult* result) const;
 
   std::string label_;
   std::shared_ptr<const Problem> problem_;
   int repetitions_;
+  RunRecorder* recorder_;
   DirectReference reference_;
   double cholesky_seconds_ = -1.0;
 };

@@ -40,7 +40,7 @@ bool RunCircle(const ExperimentRun& run, ExperimentTables* tables, std::string* 
     if (InterruptRequested()) break;
     if (run.progress) run.progress(done++ / 4.0, ratio.name);
     const auto problem = SourceFit(MisplacedCircle(), ratio.alpha, ratio.beta);
-    ProblemRuns runs("circle", problem, 1);
+    ProblemRuns runs(std::string("circle (") + ratio.name + ")", problem, 1, run.recorder);
     CsvTable rows(RunColumns());
     const RunResult result = runs.Run("banded_qr", RunSpec(), &rows);
     const double bump = OffTheCircle(*problem, result.x, kMisplaced - 2, kMisplaced + 2);

@@ -84,7 +84,8 @@ bool RunMethods(const ExperimentRun& run, ExperimentTables* tables, std::string*
       if (InterruptRequested()) break;
       if (run.progress) run.progress(done++ / 15.0, std::to_string(size) + " points");
       const auto problem = SourceFit(GrowingCurve(size), ratio.alpha, ratio.beta);
-      ProblemRuns runs("curve", problem, run.repetitions);
+      ProblemRuns runs(std::string("curve (") + ratio.name + ")", problem, run.repetitions,
+                       run.recorder);
       Eigen::VectorXd reference;
       if (size <= kMostForReference) reference = Reference(*problem);
       for (const char* method : kMethods) {

@@ -57,7 +57,7 @@ bool RunShapes(const ExperimentRun& run, ExperimentTables* tables, std::string* 
       if (InterruptRequested()) break;
       if (run.progress) run.progress(done++ / 12.0, shape.name);
       const auto problem = SourceFit(points, ratio.alpha, ratio.beta);
-      ProblemRuns runs(shape.name, problem, 1);
+      ProblemRuns runs(std::string(shape.name) + " (" + ratio.name + ")", problem, 1, run.recorder);
       CsvTable rows(RunColumns());
       const RunResult result = runs.Run("banded_qr", RunSpec(), &rows);
       const BsplineCurve curve = problem->curve_fit()->Curve(result.x);

@@ -93,8 +93,13 @@ bool RunOne(const Reproduction& reproduction, const Experiment& experiment,
   result->taken_over = spec.resume && TakeOver(reproduction, experiment, spec, &result->tables);
   if (!result->taken_over) {
     result->tables.clear();
-    if (!experiment.run(spec.run, &result->tables, error)) return false;
+    RunRecorder recorder(spec.folder, experiment.name);
+    ExperimentRun run = spec.run;
+    run.recorder = &recorder;
+    if (!experiment.run(run, &result->tables, error)) return false;
     if (InterruptRequested()) return true;
+    // First: with tables in its folder an experiment counts as finished.
+    if (!recorder.Commit(error)) return false;
   }
   FileBatch batch;
   if (!result->taken_over &&

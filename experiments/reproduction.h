@@ -8,6 +8,7 @@
 
 #include "experiments/csv_table.h"
 #include "experiments/plot.h"
+#include "experiments/run_recorder.h"
 
 namespace batten {
 
@@ -43,6 +44,7 @@ struct ExperimentRun {
   int repetitions = 5;  ///< Times are medians of so many runs.
   /// Told before each part of the work: this fraction is done; may be empty.
   std::function<void(double fraction, const std::string& text)> progress;
+  RunRecorder* recorder = nullptr;  ///< Keeps the runs of solvers; may be null.
 };
 
 /// A list of runs whose results are tables, and what is read from them. Runs that must fail (a
@@ -93,8 +95,8 @@ struct ReproductionResult {
   bool interrupted = false;
 };
 
-/// Runs the experiments; after each its CSV files and figures are written, at the end NAME.md and
-/// NAME.html (which needs no other file). False with one sentence in `error`.
+/// Runs the experiments; after each its runs, CSV files and figures are written, at the end NAME.md
+/// and NAME.html (which needs no other file). False with one sentence in `error`.
 bool Reproduce(const Reproduction& reproduction, const ReproductionSpec& spec,
                ReproductionResult* result, std::string* error);
 

@@ -54,7 +54,8 @@ bool Prepare(const Reproduction& reproduction, const ReproductionSpec& spec, std
     return false;
   }
   std::vector<OutputFile> outputs = {{"out", spec.folder + "/" + reproduction.name + ".md"},
-                                     {"out", spec.folder + "/" + reproduction.name + ".html"}};
+                                     {"out", spec.folder + "/" + reproduction.name + ".html"},
+                                     {"out", spec.folder + "/cells.jsonl"}};
   for (const Experiment& experiment : reproduction.experiments) {
     outputs.push_back({"out", spec.folder + "/" + experiment.name + ".csv"});
   }
@@ -127,6 +128,8 @@ Command ReproduceCommand() {
   command.details = {
       "Writes OUT/NAME.html (one file, pictures put in), OUT/NAME.md, and for each experiment its "
       "CSV files and figures: .svg with the gnuplot script (.gp) and the data (.dat) behind it. "
+      "Runs of solvers are kept as compare keeps them: cells.jsonl, traces/, iterates/; batten "
+      "report OUT makes a page of all. "
       "Each verdict is computed from the CSV by the rule stated beside it. Runs that an experiment "
       "expects to fail are no failures.",
       "Reproductions: " + KnownReproductions() + "."};

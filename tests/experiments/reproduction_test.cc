@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "experiments/experiment_runs.h"
 #include "experiments/reproduction_page.h"
 #include "tests/experiments/figure_files.h"
 #include "tests/problems/scratch_folder.h"
@@ -110,6 +111,24 @@ TEST_F(Reproducing, TakesOverWhatAnEarlierRunHasFinished) {
   EXPECT_TRUE(resumed.experiments[0].taken_over);
   EXPECT_EQ(num_runs_, 2);
   EXPECT_EQ(resumed.experiments[0].tables.at("").ToCsv(), "n,square\n1,1\n2,4\n3,9\n");
+}
+
+TEST_F(Reproducing, KeepsTheRunsOfExperimentsAlsoWhereItTakesThemOver) {
+  const auto squares = reproduction_.experiments[0].run;
+  reproduction_.experiments[0].run = [squares](const ExperimentRun& run, ExperimentTables* tables,
+                                               std::string* error) {
+    ProblemRuns on("loop", LoopProblem(60, 10, 1.0), 1, run.recorder);
+    CsvTable unused(RunColumns());
+    on.Run("cg", RaceSpec(1e-8), &unused);
+    return squares(run, tables, error);
+  };
+  Run();
+  const std::string cells = Contents(folder_ / "cells.jsonl");
+  EXPECT_THAT(cells, HasSubstr("\"experiment\":\"squares\""));
+  EXPECT_THAT(cells, HasSubstr("\"solver\":\"cg\""));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "traces/squares-0001.csv"));
+  Run(true);
+  EXPECT_EQ(Contents(folder_ / "cells.jsonl"), cells);
 }
 
 TEST_F(Reproducing, JudgesTheFilesItTakesOver) {

@@ -25,7 +25,8 @@ TEST_F(ReproduceCommand, WritesThePageOfOneExperiment) {
   EXPECT_EQ(ended.err, "");
   EXPECT_THAT(ended.out, HasSubstr("GIM 134 iterations, L-BFGS 8"));
   for (const char* name :
-       {"accelerated-gim.md", "accelerated-gim.html", "figure_1.csv", "figure_1_counts.svg"}) {
+       {"accelerated-gim.md", "accelerated-gim.html", "figure_1.csv", "figure_1_counts.svg",
+        "figure_1_counts.plot.json", "cells.jsonl", "traces/figure_1-0001.csv"}) {
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / "out/" + name)) << name;
   }
 }

@@ -62,15 +62,18 @@ const inOrder = values => [...new Set(values)];
 const allProblems = inOrder(rows.map(row => row.problem));
 const allSolvers = inOrder(rows.map(row => row.solver));
 const allTerms = inOrder(rows.flatMap(row => row.termList));
+const allExperiments = inOrder(rows.map(row => row.experiment ?? ''));  // of reproductions
 const isOverlapped = row => row.overlapped === true;
 const hasWorkUnits = rows.some(row => isNumber(row.work_units));
 
 const filters = {
   problem: new Set(allProblems), solver: new Set(allSolvers), term: new Set(allTerms),
+  experiment: new Set(allExperiments),
 };
 let chosen = rows;  // the rows that pass
 function applyFilters() {
   chosen = rows.filter(row => filters.problem.has(row.problem) && filters.solver.has(row.solver) &&
+                              filters.experiment.has(row.experiment ?? '') &&
                               row.termList.some(term => filters.term.has(term)));
 }
 

@@ -1,9 +1,14 @@
 // The sections that are not made of runs: verdicts on claims, pictures, tables, the build.
 
-function addFolderSections() {
+// The pages of reproductions; returns the pictures and tables that none of them shows.
+function addPages() {
   const pictures = new Map(doc.pictures.map(picture => [picture.name, picture]));
   const tables = new Map(doc.tables.map(table => [table.name, table]));
   for (const page of doc.pages) addPage(page, pictures, tables);
+  return { pictures, tables };
+}
+
+function addFolderSections({ pictures, tables }) {
   if (doc.bench_notes.length > 0) {
     const points = doc.bench_notes.filter(line => line.startsWith('- '));
     addSection('Notes of the benchmark', element('div', {},

@@ -150,7 +150,8 @@ function panelPlot(stem, place, title) {
     const kept = sum(series => series.x.length), all = sum(series => series.num_points);
     const lost = kept - rows.data.length;
     const caption = [
-      `Panel ${place + 1} of ${panelsOf()[stem].length} of ${stem}: ${panel.y_label || 'up'} against ${panel.x_label || 'along'}, ` +
+      `Panel ${place + 1} of ${panelsOf()[stem].length} of ${stem}: ` +
+        (panel.x_label || panel.y_label ? `${panel.y_label || 'up'} against ${panel.x_label || 'along'}, ` : 'in the plane, ') +
         `${counted(panel.series.length, 'line')} of ${counted(rows.data.length, 'point')}.`,
       panel.equal_scale ? 'One unit is as long on both axes.' : '',
       all > kept ? `Thinned from ${counted(all, 'point')}: the data of the picture has them all.` : '',

@@ -63,6 +63,7 @@ function filterSection() {
   const box = element('details', { open: innerWidth > 700, id: 'filters' },
     element('summary', {}, element('span', { id: 'num-chosen', 'aria-live': 'polite' })),
     element('div', { class: 'filters' },
+      allExperiments.length > 1 ? choiceList('experiment', 'Experiments', allExperiments) : null,
       choiceList('problem', 'Problems', allProblems), choiceList('solver', 'Solvers', allSolvers),
       choiceList('term', 'Terms', allTerms)));
   return box;
@@ -107,13 +108,15 @@ function start() {
     main.append(element('div', { role: 'note' },
       ...doc.notes.map(note => element('p', { class: 'bad' }, 'Note: ' + note))));
   }
+  // What a reproduction says about its paper comes first.
+  const shown = addPages();
   if (rows.length > 0) {
     main.append(filterSection());
     addRunSections();
   } else if (doc.tables.length === 0) {
     main.append(element('p', {}, 'No run is finished yet.'));
   }
-  addFolderSections();
+  addFolderSections(shown);
   update();
   document.getElementById('scheme').addEventListener('click', () => {
     wantedScheme = kSchemes[(kSchemes.indexOf(wantedScheme) + 1) % kSchemes.length];
