@@ -71,6 +71,7 @@ FitSpec FreeSpec(int control_points) {
 
 const std::vector<std::string>& IteratingMethods() {
   static const auto& names = *new std::vector<std::string>{kJointLbfgs,
+                                                           kAndersonPdm,
                                                            "pdm",
                                                            "tdm",
                                                            "sdm",

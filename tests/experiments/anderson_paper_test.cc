@@ -387,6 +387,12 @@ TEST(AndersonPaper, ScalesItsExamplesToTheUnitBox) {
   EXPECT_EQ(examples[2].points.rows(), 200);
 }
 
+TEST(AndersonPaper, RunsThePapersTwoMethodsAndAllThatAreDrawn) {
+  for (const char* method : kDrawnMethods) {
+    EXPECT_THAT(IteratingMethods(), ::testing::Contains(method));
+  }
+}
+
 TEST(AndersonPaper, CountsProjectionsAndReachesThePolishedMinimum) {
   std::vector<PaperExample> examples;
   std::string error;
