@@ -114,6 +114,12 @@
       const drawn = new Set(plot.drawn.data.map(row => row.solver));
       expect(`${plot.title}: the solvers that apply`, drawn.size === applying.size &&
         [...drawn].every(solver => applying.has(solver)));
+      const ofKind = rows.filter(row => kindOf(row) === kind);
+      const numInstances = list => new Set(list.map(row => row.instanceId)).size;
+      const isMissing = solver => numInstances(ofKind.filter(row => row.solver === solver)) < numInstances(ofKind);
+      const said = plot.caption.textContent.match(/Not run on all(.*)[.] Filter/)?.[1] ?? '';
+      expect(`${plot.title}: says who was not run on all`,
+        [...drawn].every(solver => isMissing(solver) === said.includes(` ${solver} on `)));
     }
     expect('a profile for each kind of parameters', kinds.every(kind =>
       allPlots.some(plot => plot.title.startsWith(`Performance profile, ${kind} parameters`))));

@@ -53,6 +53,12 @@ const failureText = runs => {
     `${count('skipped')} skipped since the solver does not apply, and of ${count('failed')} that ` +
     'failed or hit a limit those that miss the target.';
 };
+// Of a reproduction different solvers run on different problems; a suite can exclude some.
+function notRunText(list, solvers) {
+  const missing = solvers.map(solver => [solver, list.filter(runs => !runs.has(solver)).length]).filter(([, count]) => count > 0);
+  return missing.length === 0 ? '' : ' Not run on all of these instances, and counted there as if they did not come to it: ' +
+    missing.map(([solver, count]) => `${solver} on ${count}`).join(', ') + '. Filter for what all were run on.';
+}
 const targetText = target =>
   target === 'stop' ? 'what the run was asked for (its stop rule)' : `a gap of ${target.toExponential()}`;
 
@@ -84,7 +90,7 @@ function profilePlot(settings, kind, own) {
     const caption = `Dolan and Moré (2002): share of ${counted(list.length, 'instance')} that a ` +
       `solver brings to ${targetText(target)} with at most tau times the ` +
       `${nameOf(measure)} of the best solver there.${noteOf(measure)} ` +
-      failureText(list.flatMap(runs => [...runs.values()])) +
+      failureText(list.flatMap(runs => [...runs.values()])) + notRunText(list, solvers) +
       basinText(own) + ` ${counted(unsolved, 'instance')} solved by none count for all. A profile of more than two ` +
       'solvers is no order of any two: for that there is the pair profile below.' +
       excludedText(left);
@@ -110,7 +116,7 @@ function runtimePlot(settings, kind, own) {
       steps(solver, times.get(solver), list.length * kTargets.length, shortest, longest * 1.2));
     const caption = `Share of ${counted(list.length * kTargets.length, 'pair')} of an instance and a ` +
       `target (gaps 1e-1, 1e-2, ... 1e-10) reached within a budget, in ${nameOf(measure)}.${noteOf(measure)} ` +
-      failureText(list.flatMap(runs => [...runs.values()])) + basinText(own) +
+      failureText(list.flatMap(runs => [...runs.values()])) + notRunText(list, solvers) + basinText(own) +
       excludedText(left);
     return shareSpec({ width, solvers, data, caption, logX: true, x: kAlong[measure].title,
                        y: 'share of instances and targets' });
