@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTraceRows = 500;
-constexpr std::size_t kMostIterates = 40;
+constexpr std::size_t kMostIterates = 20;
 // To measure and audit the end of a run on more data points takes longer than the run.
 constexpr Eigen::Index kMostMeasured = 200'000;
 

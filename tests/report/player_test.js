@@ -30,7 +30,7 @@ function testEnds({ expect }, drawn) {
   // The first run of each solver has its name alone for the name of its panel.
   const ends = rows.filter(row => String(row.group) === chosenGroup() && hasCurve(row)).slice(0, kMostPanels)
     .filter((row, k, list) => list.findIndex(other => other.solver === row.solver) === k)
-    // A curve that has gone too far is none any more (docs/report.md): it is not drawn.
+    // A curve that has gone too far is none any more: it is not drawn.
     .filter(row => isNumber(row.max_orthogonal) && !curves().runs[row.key].points.at(-1).includes(null));
   expect('runs say how far from the data they end', ends.length > 0);
   for (const row of ends) {

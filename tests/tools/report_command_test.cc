@@ -90,8 +90,8 @@ TEST(ReportCommand, NoTextOfTheDataEndsItsScript) {
   EXPECT_THAT(ScriptText(page, "summary-data"), Not(HasSubstr("\xe2\x80\xa8")));
   const nlohmann::json summary = nlohmann::json::parse(ScriptText(page, "summary-data"));
   EXPECT_EQ(summary["logs"]["k"], hostile);
-  // Three of data, three of the library, one of the page.
-  EXPECT_EQ(Count(page, "</script>"), 7u);
+  // Four of data, three of the library, one of the page.
+  EXPECT_EQ(Count(page, "</script>"), 8u);
 }
 
 TEST(ReportCommand, TheProgramHoldsTheFilesOfThePageAsTheyStand) {

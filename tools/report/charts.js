@@ -170,6 +170,13 @@ const axisOf = (field, title, isLog, extra = {}) => ({
   scale: { ...(isLog ? { type: 'log', nice: false } : { zero: false }), ...extra.scale },
   axis: { format: isLog && field === 'py' ? '~e' : '.8~g' },
 });
+// The range of the data with some room; a single value has room around it too.
+function domainAround(values, isLog) {
+  const shown = isLog ? values.map(Math.log) : values;
+  const [low, high] = shown.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
+  const room = high > low ? 0.03 * (high - low) : isLog ? 0.7 : Math.max(1, Math.abs(low)) * 0.5;
+  return [low - room, high + room].map(value => isLog ? Math.exp(value) : value);
+}
 // A text in lines that are at most so many pixels wide, unless a word is wider. No word ends it alone.
 const ruler = document.createElement('canvas').getContext('2d');
 function inLines(text, width) {

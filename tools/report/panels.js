@@ -37,19 +37,11 @@ function panelRows(panel, looks) {
   };
 }
 
-// The range of the data with some room; a single value has room around it too.
-function panelDomain(values, isLog) {
-  const shown = isLog ? values.map(Math.log) : values;
-  const [low, high] = shown.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
-  const room = high > low ? 0.03 * (high - low) : isLog ? 0.7 : Math.max(1, Math.abs(low)) * 0.5;
-  return [low - room, high + room].map(value => isLog ? Math.exp(value) : value);
-}
-
 // Width and height of a panel, and its domains: with equal scale a unit is as many pixels on both.
 function panelSize(panel, data, width) {
   const x = panel.x_names.length > 0 ? [0.5, panel.x_names.length + 0.5]
-    : panelDomain(data.map(row => row.px), panel.log_x);
-  const y = panel.is_share ? [0, 1.03] : panelDomain(data.map(row => row.py), panel.log_y);
+    : domainAround(data.map(row => row.px), panel.log_x);
+  const y = panel.is_share ? [0, 1.03] : domainAround(data.map(row => row.py), panel.log_y);
   if (!panel.equal_scale) {
     const turned = areNamesCrowded(panel.x_names, width) ? 80 : 0;
     return { x, y, width, height: Math.round(Math.min(340, Math.max(260, width * 0.55))) + turned };
