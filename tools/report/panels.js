@@ -59,7 +59,7 @@ function panelAxes(panel, size, names) {
   const axis = (field, title, isLog, domain, lines) => ({
     field, type: 'quantitative', title: title === '' ? null : inLines(title, lines),
     scale: { domain, nice: false, ...(isLog ? { type: 'log' } : { zero: false }) },
-    axis: { format: '.8~g', tickCount: isLog ? 5 : 6 },
+    axis: { format: '.8~g', tickCount: isLog ? 5 : 6, labelSeparation: 6 },
   });
   const x = axis('px', panel.x_label, panel.log_x, size.x, size.width - 70);
   const y = axis('py', panel.y_label, panel.log_y, size.y, size.height - 40);
