@@ -42,13 +42,29 @@ FitReport NotMeasured() {
   return report;
 }
 
+bool IsMeasured(const Problem& problem) {
+  const CurveFit* const fit = problem.curve_fit();
+  return fit == nullptr || fit->data().points.rows() <= kMostMeasured;
+}
+
+/// The audit knows the constraints of a fit's specification. Those that an experiment has put on
+/// the problem itself it does not, and would refute whoever keeps them.
+bool AuditKnowsConstraints(const Problem& problem) {
+  const CurveFit* const fit = problem.curve_fit();
+  const bool has_own =
+      fit != nullptr && (!fit->spec().constraints.empty() || fit->spec().hold_ends);
+  return has_own || problem.elimination().trivial();
+}
+
 void MeasureRecorded(const RecordedRun& run, ComparisonRow* row) {
-  const CurveFit* const fit = run.problem->curve_fit();
-  if (fit == nullptr || fit->data().points.rows() <= kMostMeasured) {
+  if (IsMeasured(*run.problem)) {
     MeasureEnd(*run.problem, *run.reference, run.spec, row);
+    if (AuditKnowsConstraints(*run.problem)) return;
+    row->report.audited = false;
+    row->report.verdict = Verdict();
     return;
   }
-  row->parameter_kind = fit->spec().parameter_kind;
+  row->parameter_kind = run.problem->curve_fit()->spec().parameter_kind;
   row->unique_minimum = run.reference->unique();
   row->gap = run.reference->Gap(row->run.x);
   row->distance_to_direct = row->allowed_distance = NAN;
@@ -136,7 +152,8 @@ void RunRecorder::Add(const RecordedRun& run, RunResult* result) {
   row.run = std::move(*result);  // with its iterates, which may be large
   MeasureRecorded(run, &row);
   OrderedJson json = CellJson(row, run.reference->minimum_energy(), run.spec);
-  const std::string disagreement = Disagreement(*run.reference, run.spec, row);
+  const std::string disagreement =
+      IsMeasured(*run.problem) ? Disagreement(*run.reference, run.spec, row) : "";
   json["disagreement"] = disagreement.empty() ? OrderedJson() : OrderedJson(disagreement);
   json["experiment"] = experiment_;
   json["key"] = key;

@@ -126,6 +126,27 @@ TEST_F(Recording, KeepsRunsOfFreeParameters) {
   EXPECT_TRUE(fs::exists(folder_ / "curves/e-0001.json"));
 }
 
+// The audit knows what stands in a fit's specification; it would find |g| of the whole too large.
+TEST_F(Recording, DoesNotAuditConstraintsThatAreNoneOfTheSpecification) {
+  const auto loop = LoopProblem(60, 10, 1.0);
+  std::string error;
+  const std::shared_ptr<Problem> tied =
+      MakeFitProblem(loop->curve_fit()->data(), loop->curve_fit()->spec(), &error);
+  ASSERT_NE(tied, nullptr) << error;
+  LinearConstraint constraint;
+  constraint.coefficients = {{0, 1.0}, {10, -1.0}};
+  ASSERT_TRUE(tied->SetLinearConstraints({constraint}, &error)) << error;
+  RunRecorder recorder(folder_.string(), "e");
+  ProblemRuns on("tied", tied, 1, &recorder);
+  CsvTable table(RunColumns());
+  on.Run("cg", RaceSpec(1e-8), &table);
+  ASSERT_TRUE(recorder.Commit(&error)) << error;
+  const CellRow row = Rows(folder_).at(0);
+  EXPECT_TRUE(row["verified"].is_null());
+  EXPECT_EQ(row["failure"], "");
+  EXPECT_TRUE(row["disagreement"].is_null());
+}
+
 TEST_F(Recording, KeepsASkippedRunWithItsReason) {
   Record("a", {"foot_newton"});
   const std::vector<CellRow> rows = Rows(folder_);
