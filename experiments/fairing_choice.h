@@ -12,7 +12,8 @@ namespace batten {
 /// How the weight of a fairing term is found from the data.
 /// gcv: the least V = (RSS / (m d)) / (1 - tr(H) / m)^2, H the hat matrix (Craven & Wahba 1979).
 /// discrepancy: RSS = m d noise^2, the noise known (Morozov; Reinsch 1967).
-/// lcurve: the sharpest bend of log bend over log RSS (Hansen 1992).
+/// lcurve: the sharpest corner of log bend over log RSS (Hansen 1992), where the residuals keep a
+/// twentieth of their degrees of freedom and are more than rounding.
 enum class FairingRule { kGcv, kDiscrepancy, kLCurve };
 const char* ToString(FairingRule rule);
 bool FromString(const std::string& text, FairingRule* rule);
@@ -22,7 +23,7 @@ struct FairingSample {
   double residual = 0.0;  ///< RSS: energy of the other terms, in the user's units.
   double bend = 0.0;      ///< Energy of the fairing term at weight 1.
   double trace = 0.0;     ///< Effective number of control points, in the mean over coordinates.
-  /// What the rule judges: V; RSS / (m d noise^2); curvature of the L.
+  /// What the rule judges: V; RSS / (m d noise^2); curvature of the L, NaN where that is left out.
   double score = 0.0;
 };
 
@@ -36,11 +37,12 @@ struct FairingChoice {
 /// none. `noise`: standard deviation of each coordinate in the user's units, for discrepancy. Each
 /// sample costs one QR and one pass over R. False with one sentence in `error` for what the rule
 /// cannot judge: losses, free parameters, several fairing terms, as many control points as points
-/// without any residual, a noise that no weight leads to.
+/// without any residual, an L without a corner, a noise that no weight leads to.
 bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, FitSpec* spec,
                          FairingChoice* choice, std::string* error);
 
-/// The curve of the choice: score over weight, and RSS and trace beside it.
+/// The curve of the choice: score over weight, RSS and trace beside it, and of lcurve the L itself;
+/// the chosen weight is marked.
 std::vector<PlotPanel> FairingChoicePanels(const FairingChoice& choice);
 
 }  // namespace batten

@@ -112,8 +112,9 @@ bool DrawFitFigure(const Problem& problem, const RunResult& run, FileBatch* batc
 bool DrawChoice(const FairingChoice& choice, FileBatch* batch, Written* written,
                 std::string* error) {
   const std::vector<PlotPanel> panels = FairingChoicePanels(choice);
-  return Drew(DrawPlot(WithExtension(FLAGS_fairing_figure, ""), panels, 3, batch), "fairing_figure",
-              FLAGS_fairing_figure, written, error);
+  const int columns = panels.size() == 4 ? 2 : 3;
+  return Drew(DrawPlot(WithExtension(FLAGS_fairing_figure, ""), panels, columns, batch),
+              "fairing_figure", FLAGS_fairing_figure, written, error);
 }
 
 bool DrawCurvature(const Problem& problem, const RunResult& run, FileBatch* batch, Written* written,

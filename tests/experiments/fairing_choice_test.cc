@@ -233,6 +233,65 @@ TEST(FairingChoice, ByTheLCurveLiesBetweenNoiseAndBend) {
   EXPECT_LE(curve.Error(choice.weight), 0.1 * curve.Error(1e6));
 }
 
+TEST(FairingChoice, ByTheLCurveIsNotMisledWhereControlPointsAreAsManyAsPoints) {
+  for (const double share : {1.0, 0.98, 0.9}) {
+    for (const unsigned seed : {8U, 9U, 10U, 11U}) {
+      SCOPED_TRACE(testing::Message() << "share " << share << " seed " << seed);
+      NoisyCurve curve(seed);
+      curve.spec.control_points = static_cast<int>(share * curve.data.points.rows());
+      FairingChoice choice;
+      std::string error;
+      FitSpec spec = curve.spec;
+      ASSERT_TRUE(
+          ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &spec, &choice, &error))
+          << error;
+      EXPECT_LE(choice.samples.size(), 70U);
+      FairingChoice by_gcv;
+      ASSERT_TRUE(
+          ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &curve.spec, &by_gcv, &error))
+          << error;
+      EXPECT_LE(curve.Error(choice.weight), 3.0 * curve.Error(by_gcv.weight)) << choice.weight;
+    }
+  }
+}
+
+TEST(FairingChoice, ByTheLCurveRefusesAnLWithoutCorner) {
+  // A parabola without noise is in the space: residuals are rounding until it is bent away.
+  NoisyCurve curve(9);
+  for (Eigen::Index i = 0; i < curve.data.points.rows(); ++i) {
+    const double t = (*curve.data.parameters)[i];
+    curve.data.points.row(i) << t, t * t;
+  }
+  curve.spec.control_points = static_cast<int>(curve.data.points.rows());
+  FairingChoice choice;
+  std::string error;
+  EXPECT_FALSE(
+      ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice, &error))
+      << choice.weight;
+  EXPECT_THAT(error, HasSubstr("fairing=lcurve finds no corner"));
+}
+
+TEST(FairingChoice, ByTheLCurveIsAsSharpAsTheCornerBetweenSamples) {
+  NoisyCurve curve(8);
+  FairingChoice choice;
+  std::string error;
+  ASSERT_TRUE(
+      ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice, &error))
+      << error;
+  // The figure shows the L and its corner.
+  const std::vector<PlotPanel> panels = FairingChoicePanels(choice);
+  ASSERT_EQ(panels.size(), 4U);
+  EXPECT_EQ(panels[1].x_label, "RSS");
+  ASSERT_EQ(panels[1].series[1].x.size(), 1U);
+  const auto chosen = std::find_if(choice.samples.begin(), choice.samples.end(),
+                                   [&](const auto& s) { return s.weight == choice.weight; });
+  ASSERT_NE(chosen, choice.samples.end());
+  EXPECT_EQ(panels[1].series[1].y[0], chosen->bend);
+  for (const FairingSample& sample : choice.samples) {
+    EXPECT_FALSE(sample.score > chosen->score) << sample.weight;
+  }
+}
+
 /// Dense algebra from the functors' own derivatives: the hat matrix A (A'A + w D'D)^-1 A' of what
 /// constraints leave, all coordinates together.
 TEST(FairingChoice, JudgesConstraintsOnSingleCoordinatesByTheHatMatrixOfAllOfThem) {
