@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "experiments/audited_terms.h"
 #include "experiments/fairing_rules.h"
 #include "problems/curve_view.h"
 #include "splines/smoothing_family.h"
@@ -36,8 +37,14 @@ bool HasLoss(const NameSpec& term) {
 /// The index of the fairing term, added where there is none.
 bool FindFairingTerm(FairingRule rule, FitSpec* spec, std::size_t* index, std::string* error) {
   const std::string name = std::string("fairing=") + ToString(rule);
-  if (spec->parameter_kind == ParameterKind::kFree) {
-    *error = name + " cannot judge free parameters, which are no linear fit; give a weight";
+  if (spec->parameter_kind != ParameterKind::kFixed) {
+    *error = name + " cannot judge " + ToString(spec->parameter_kind) +
+             " parameters, which are no linear fit; give a weight";
+    return false;
+  }
+  if (spec->guard.has_value()) {
+    *error = name + " chooses the weight of the only fairing term, and the guard " +
+             spec->guard->ToString() + " is another; leave the guard out or give a weight";
     return false;
   }
   if (spec->terms.empty()) spec->terms.push_back({"interpolation", {}, nullptr});
@@ -59,6 +66,20 @@ bool FindFairingTerm(FairingRule rule, FitSpec* spec, std::size_t* index, std::s
   }
   *index = found.front();
   return true;
+}
+
+/// What of the problem is no linear least-squares fit, as the end of a sentence; empty: nothing.
+std::string WhyNotLinear(const Problem& problem) {
+  if (const ConstraintFamily* const constraints = problem.nonlinear_constraints()) {
+    return "cannot judge the constraint " + constraints->name(0) +
+           ", which is not linear; give a weight";
+  }
+  for (const Problem::TermInstance& term : problem.terms()) {
+    if (term.family->rows() != nullptr) continue;
+    return "cannot judge the term " + term.name +
+           ", which is not affine in the control points; give a weight";
+  }
+  return "";
 }
 
 }  // namespace
@@ -87,19 +108,30 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   SetWeight(1.0, &spec->terms[fairing]);
   const std::unique_ptr<Problem> problem = MakeFitProblem(data, *spec, error);
   if (problem == nullptr) return false;
-  std::vector<const RowSource*> others;
-  for (std::size_t i = 0; i < problem->terms().size(); ++i) {
-    if (i != fairing) others.push_back(problem->terms()[i].family->rows());
-  }
-  const auto data_view = CurveView::Make(*problem, others, nullptr);
-  const auto fairing_view =
-      CurveView::Make(*problem, {problem->terms()[fairing].family->rows()}, nullptr);
-  if (data_view == nullptr || fairing_view == nullptr) {
-    *error = std::string("fairing=") + ToString(rule) +
-             " needs another term, terms that are affine, and constraints that are linear";
+  const std::string why_not = WhyNotLinear(*problem);
+  if (!why_not.empty()) {
+    *error = std::string("fairing=") + ToString(rule) + " " + why_not;
     return false;
   }
-  const SmoothingFamily family(data_view->row_source(), fairing_view->row_source());
+  // Terms at the ends and the like pull, but are no data that anything could be told from.
+  std::vector<const RowSource*> distances, others;
+  for (std::size_t i = 0; i < problem->terms().size(); ++i) {
+    if (i == fairing) continue;
+    const Problem::TermInstance& term = problem->terms()[i];
+    (IsDistanceTerm(term, *problem->curve_fit()) ? distances : others)
+        .push_back(term.family->rows());
+  }
+  const auto data_view = CurveView::Make(*problem, distances, nullptr);
+  const auto fairing_view =
+      CurveView::Make(*problem, {problem->terms()[fairing].family->rows()}, nullptr);
+  const auto others_view = CurveView::Make(*problem, others, nullptr);
+  if (data_view == nullptr || fairing_view == nullptr) {
+    *error = std::string("fairing=") + ToString(rule) +
+             " judges the residuals of the term interpolation, which is not among the terms";
+    return false;
+  }
+  const SmoothingFamily family(data_view->row_source(), fairing_view->row_source(),
+                               others_view == nullptr ? nullptr : &others_view->row_source());
   // Constraints on single coordinates make one system of all of them.
   const int dimension = data_view->dimension();
   const int systems = problem->curve_fit()->dimension() / dimension;

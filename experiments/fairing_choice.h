@@ -20,7 +20,7 @@ bool FromString(const std::string& text, FairingRule* rule);
 
 struct FairingSample {
   double weight = 0.0;
-  double residual = 0.0;  ///< RSS: energy of the other terms, in the user's units.
+  double residual = 0.0;  ///< RSS: energy of the term interpolation, in the user's units.
   double bend = 0.0;      ///< Energy of the fairing term at weight 1.
   double trace = 0.0;     ///< Effective number of control points, in the mean over coordinates.
   /// What the rule judges: V; RSS / (m d noise^2); curvature of the L, NaN where that is left out.
@@ -35,8 +35,10 @@ struct FairingChoice {
 
 /// Sets the weight of the one fairing term of `spec`, adding one of derivative 2 where there is
 /// none. `noise`: standard deviation of each coordinate in the user's units, for discrepancy. Each
-/// sample costs one QR and one pass over R. False with one sentence in `error` for what the rule
-/// cannot judge: losses, free parameters, several fairing terms, as many control points as points
+/// sample costs one QR and one pass over R. Other terms, such as end_tangent, pull at each weight
+/// but are no data: neither RSS nor trace nor m counts them. False with one sentence in `error` for
+/// what the rule cannot judge: losses, terms and constraints that are not linear, free or projected
+/// parameters, several fairing terms, a guard, which is one, as many control points as points
 /// without any residual, an L without a corner, a noise that no weight leads to.
 bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, FitSpec* spec,
                          FairingChoice* choice, std::string* error);

@@ -1,5 +1,6 @@
 #include "splines/smoothing_family.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -10,27 +11,31 @@
 namespace batten {
 namespace {
 
-/// Rows at each first column, and how many are not zero.
+/// Rows of a source at each first column that they have among wider ones, and how many are not
+/// zero.
 class Counter : public RowConsumer {
  public:
-  explicit Counter(const RowShape& shape) : shape_(shape), counts(shape.num_columns, 0) {}
+  Counter(int source_width, const RowShape& wide)
+      : counts(static_cast<std::size_t>(wide.num_columns), 0),
+        source_width_(source_width),
+        last_column_(wide.num_columns - (wide.cyclic ? 1 : wide.width)) {}
   void Consume(const RowBlock& block) override {
-    counts[static_cast<std::size_t>(block.first_column)] += block.num_rows;
+    // Of open matrices wider rows begin farther left at the end (BandedRows).
+    counts[static_cast<std::size_t>(std::min(block.first_column, last_column_))] += block.num_rows;
     for (int i = 0; i < block.num_rows; ++i) {
       bool is_zero = true;
-      for (int j = 0; j < shape_.width; ++j) {
+      for (int j = 0; j < source_width_; ++j) {
         is_zero = is_zero && block.coefficients[j * block.stride + i] == 0.0;
       }
       if (!is_zero) ++num_nonzero;
     }
   }
-
- private:
-  RowShape shape_;
-
- public:
   std::vector<int> counts;
   int num_nonzero = 0;
+
+ private:
+  int source_width_;
+  int last_column_;
 };
 
 double Trace(const NormalBand& band) {
@@ -40,21 +45,27 @@ double Trace(const NormalBand& band) {
 
 }  // namespace
 
-SmoothingFamily::SmoothingFamily(const RowSource& data, const RowSource& fairing)
+SmoothingFamily::SmoothingFamily(const RowSource& data, const RowSource& fairing,
+                                 const RowSource* others)
     : data_({&data}),
       fairing_({&fairing}),
-      all_({&data_, &fairing_}),
+      others_(others == nullptr ? std::vector<const RowSource*>() : std::vector{others}),
+      all_(others == nullptr ? std::vector<const RowSource*>{&data_, &fairing_}
+                             : std::vector<const RowSource*>{&data_, &others_, &fairing_}),
       normal_(NormalBand::FromRows(data_)),
       trace_of_fairing_(Trace(NormalBand::FromRows(fairing_))) {
-  Counter of_data(data_.shape());
-  Counter of_fairing(fairing_.shape());
-  data_.Stream(&of_data);
-  fairing_.Stream(&of_fairing);
-  num_data_ = of_data.num_nonzero;
+  std::vector<Counter> counters;
+  for (const BandedRows* source : {&data_, &others_, &fairing_}) {
+    counters.emplace_back(source->shape().width, all_.shape());
+    source->Stream(&counters.back());
+  }
+  num_data_ = counters[0].num_nonzero;
   // Rows of one first column stand in the order of the sources.
-  for (std::size_t column = 0; column < of_data.counts.size(); ++column) {
-    is_fairing_.insert(is_fairing_.end(), static_cast<std::size_t>(of_data.counts[column]), 0);
-    is_fairing_.insert(is_fairing_.end(), static_cast<std::size_t>(of_fairing.counts[column]), 1);
+  for (std::size_t column = 0; column < counters[0].counts.size(); ++column) {
+    for (const Counter& counter : counters) {
+      is_fairing_.insert(is_fairing_.end(), static_cast<std::size_t>(counter.counts[column]),
+                         &counter == &counters.back() ? 1 : 0);
+    }
   }
 }
 

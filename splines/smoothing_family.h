@@ -8,19 +8,21 @@
 
 namespace batten {
 
-/// The minimisers of |A P - Q|^2 + weight |D P - G|^2 for one pair of row sources and any weight,
-/// each by one QR in the band.
+/// The minimisers of |A P - Q|^2 + |B P - R|^2 + weight |D P - G|^2 for data rows A, rows B that
+/// are no data (or none), fairing rows D and any weight, each by one QR in the band.
 class SmoothingFamily {
  public:
-  /// Both of the same columns, width, dimension and kind; they are copied.
-  SmoothingFamily(const RowSource& data, const RowSource& fairing);
+  /// All of the same columns, dimension and kind; they are copied. `others`: B, null for none.
+  SmoothingFamily(const RowSource& data, const RowSource& fairing,
+                  const RowSource* others = nullptr);
 
   struct Member {
     double weight = 0.0;
     Points control_points;
     double residual = 0.0;  ///< |A P - Q|^2
     double bend = 0.0;      ///< |D P - G|^2
-    /// Trace of the hat matrix: effective number of control points, each coordinate's.
+    /// Trace of the hat matrix of the data rows: effective number of control points, each
+    /// coordinate's.
     double trace = 0.0;
   };
   /// False where there is no finite answer.
@@ -35,8 +37,9 @@ class SmoothingFamily {
  private:
   BandedRows data_;
   BandedRows fairing_;
-  BandedRows all_;                // of both
-  std::vector<char> is_fairing_;  // which of them
+  BandedRows others_;
+  BandedRows all_;                // of all of them
+  std::vector<char> is_fairing_;  // which of these
   NormalBand normal_;             // A'A
   double trace_of_fairing_ = 0.0;
   int num_data_ = 0;

@@ -343,13 +343,41 @@ TEST(FairingChoice, JudgesConstraintsOnSingleCoordinatesByTheHatMatrixOfAllOfThe
   }
 }
 
+TEST(FairingChoice, CountsNoTermAtTheEndsAsData) {
+  NoisyCurve curve(11);
+  FairingChoice plain, choice;
+  std::string error;
+  FitSpec spec = curve.spec;
+  ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &plain, &error));
+  // Far too long, and so heavy that it holds: residuals of its own that no weight changes.
+  ASSERT_TRUE(ParseNameSpecList("interpolation,fairing,end_tangent/x=30/y=40/weight=1e9",
+                                &curve.spec.terms, &error));
+  ASSERT_TRUE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &curve.spec, &choice, &error))
+      << error;
+  const auto problem = MakeFitProblem(curve.data, curve.spec, &error);
+  const double residual =
+      Objective(problem.get(), nullptr).TermEnergies(RunSolver(*problem, "banded_qr").x)[0] *
+      problem->units().energy;
+  const auto chosen = std::find_if(choice.samples.begin(), choice.samples.end(),
+                                   [&](const auto& s) { return s.weight == choice.weight; });
+  ASSERT_NE(chosen, choice.samples.end());
+  EXPECT_NEAR(chosen->residual, residual, 1e-6 * residual);
+  // Control points that it holds are none that the data decide on: less than n of the lightest.
+  const double n = problem->curve_fit()->basis().num_control_points();
+  EXPECT_NEAR(plain.samples.front().trace, n, 0.1);
+  EXPECT_NEAR(choice.samples.front().trace, n - 2.0, 0.2);
+  const auto md = static_cast<double>(curve.data.points.size());
+  const double freedom = 1.0 - chosen->trace / static_cast<double>(curve.data.points.rows());
+  EXPECT_NEAR(chosen->score, residual / md / (freedom * freedom), 1e-6 * chosen->score);
+}
+
 TEST(FairingChoice, RefusesWhatItCannotJudge) {
-  const NoisyCurve curve(9);
+  NoisyCurve curve(9);
   const auto why_not = [&](const std::string& terms, ParameterKind kind) {
     FitSpec spec = curve.spec;
     FairingChoice choice;
     std::string error;
-    EXPECT_TRUE(ParseNameSpecList(terms, &spec.terms, &error));
+    EXPECT_TRUE(terms.empty() || ParseNameSpecList(terms, &spec.terms, &error));
     spec.parameter_kind = kind;
     EXPECT_FALSE(ChooseFairingWeight(curve.data, FairingRule::kGcv, 0.0, &spec, &choice, &error));
     return error;
@@ -360,6 +388,26 @@ TEST(FairingChoice, RefusesWhatItCannotJudge) {
             "fairing=gcv cannot judge free parameters, which are no linear fit; give a weight");
   EXPECT_EQ(why_not("interpolation,fairing,fairing/derivative=3", ParameterKind::kFixed),
             "fairing=gcv chooses one weight; found 2 fairing terms");
+  EXPECT_EQ(
+      why_not("", ParameterKind::kProjected),
+      "fairing=gcv cannot judge projected parameters, which are no linear fit; give a weight");
+  EXPECT_EQ(why_not("interpolation,curve_fairing/weight=0.1", ParameterKind::kFixed),
+            "fairing=gcv cannot judge the term curve_fairing/weight=0.1, which is not affine in "
+            "the control points; give a weight");
+  EXPECT_EQ(why_not("end_point,fairing", ParameterKind::kFixed),
+            "fairing=gcv judges the residuals of the term interpolation, which is not among the "
+            "terms");
+  EXPECT_THAT(why_not("foot_point", ParameterKind::kFixed), HasSubstr("foot_point"));
+  curve.spec.guard = NameSpec{"bending", {}, nullptr};
+  EXPECT_EQ(why_not("interpolation", ParameterKind::kFixed),
+            "fairing=gcv chooses the weight of the only fairing term, and the guard bending is "
+            "another; leave the guard out or give a weight");
+  curve.spec.guard.reset();
+  ASSERT_TRUE(curve.spec.constraints.empty());
+  curve.spec.constraints = {Named("curvature/t=0.5/kappa=1")};
+  EXPECT_EQ(why_not("interpolation", ParameterKind::kFixed),
+            "fairing=gcv cannot judge the constraint curvature/t=0.5/kappa=1, which is not linear; "
+            "give a weight");
 }
 
 }  // namespace

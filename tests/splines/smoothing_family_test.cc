@@ -71,6 +71,33 @@ TEST(SmoothingFamily, HasTheMembersThatDenseAlgebraFinds) {
   }
 }
 
+TEST(SmoothingFamily, CountsOthersNeitherAsDataNorAsFairing) {
+  for (const bool cyclic : {false, true}) {
+    const int n = 12;
+    // Of unlike widths: at the end of an open matrix narrow rows are moved among wide ones.
+    const ListedRows data = BsplineRows({n, 4, 2, cyclic}, 2, 20250507);
+    const ListedRows fairing = RandomRows({n, 3, 2, cyclic}, 1, 2, 20250508);
+    const ListedRows others = RandomRows({n, 2, 2, cyclic}, 1, 1, 20250509);
+    const SmoothingFamily family(data, fairing, &others);
+    EXPECT_EQ(family.num_data(), data.Matrix().rows());
+    const Eigen::MatrixXd a = data.Matrix(), b = others.Matrix(), d = fairing.Matrix();
+    const double weight = 20.0;
+    const Eigen::MatrixXd normal =
+        a.transpose() * a + b.transpose() * b + weight * d.transpose() * d;
+    const Eigen::LDLT<Eigen::MatrixXd> factor(normal);
+    const Eigen::MatrixXd p = factor.solve(a.transpose() * data.RightHandSides() +
+                                           b.transpose() * others.RightHandSides() +
+                                           weight * d.transpose() * fairing.RightHandSides());
+    SmoothingFamily::Member member;
+    ASSERT_TRUE(family.At(weight, &member));
+    const double tolerance = 1e-9;
+    EXPECT_LE((member.control_points - p).norm(), tolerance);
+    EXPECT_NEAR(member.residual, (a * p - data.RightHandSides()).squaredNorm(), tolerance);
+    EXPECT_NEAR(member.bend, (d * p - fairing.RightHandSides()).squaredNorm(), tolerance);
+    EXPECT_NEAR(member.trace, factor.solve(a.transpose() * a).trace(), tolerance);
+  }
+}
+
 TEST(ScaledRows, AreTheRowsTimesTheirFactors) {
   const ListedRows listed = RandomRows({12, 4, 2, true}, 2, 7, 20250506);
   std::vector<double> factors;
