@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
 #include <vector>
@@ -16,10 +17,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// h and dh / dy, y the free variables, one row for each constraint.
+/// h and dh / dy, y the free variables, one row for each constraint; dh / dx of all variables, too.
 struct Linearized {
   Eigen::VectorXd h;
   Eigen::MatrixXd jacobian;
+  SparseRows by_all;
 };
 
 bool Linearize(const Problem& problem, const Eigen::VectorXd& x, Linearized* made) {
@@ -27,17 +29,18 @@ bool Linearize(const Problem& problem, const Eigen::VectorXd& x, Linearized* mad
   if (constraints.Residuals(x, &made->h) != Status::kOk) return false;
   std::vector<Eigen::Triplet<double>> entries;
   if (constraints.Jacobian(x, 0, &entries) != Status::kOk) return false;
-  SparseRows jacobian(constraints.size(), x.size());
-  jacobian.setFromTriplets(entries.begin(), entries.end());
+  made->by_all.resize(constraints.size(), x.size());
+  made->by_all.setFromTriplets(entries.begin(), entries.end());
   const LinearElimination& elimination = problem.elimination();
-  made->jacobian = elimination.trivial() ? Eigen::MatrixXd(jacobian)
-                                         : Eigen::MatrixXd(SparseRows(jacobian * elimination.z()));
+  made->jacobian = elimination.trivial()
+                       ? Eigen::MatrixXd(made->by_all)
+                       : Eigen::MatrixXd(SparseRows(made->by_all * elimination.z()));
   return made->jacobian.allFinite();
 }
 
 /// Rows of `held` only.
 Linearized Part(const Linearized& all, const std::vector<int>& held) {
-  return {all.h(held), all.jacobian(held, Eigen::all)};
+  return {all.h(held), all.jacobian(held, Eigen::all), {}};
 }
 
 /// The map from forces on y to moves of least length in x = offset + Z y: (Z'Z)^-1.
@@ -98,6 +101,84 @@ bool CheckOpposites(const ConstraintFamily& constraints, const Linearized& all,
     }
   }
   return true;
+}
+
+/// Names of the linear constraints whose gradients add up to `force`, a vector of all variables.
+std::set<std::string> NamesOf(const std::vector<LinearConstraint>& linear,
+                              const Eigen::VectorXd& force) {
+  // Those that have to do with it: all others would only make the matrix larger.
+  std::map<int, int> row_of;
+  for (int v = 0; v < force.size(); ++v) {
+    if (force[v] != 0.0) row_of.emplace(v, static_cast<int>(row_of.size()));
+  }
+  std::set<std::size_t> reached;
+  for (std::size_t before = linear.size() + 1; reached.size() != before;) {
+    before = reached.size();
+    for (std::size_t i = 0; i < linear.size(); ++i) {
+      const auto& coefficients = linear[i].coefficients;
+      const bool touches =
+          std::any_of(coefficients.begin(), coefficients.end(),
+                      [&](const auto& entry) { return row_of.count(entry.first) > 0; });
+      if (!touches || !reached.insert(i).second) continue;
+      for (const auto& entry : coefficients) {
+        row_of.emplace(entry.first, static_cast<int>(row_of.size()));
+      }
+    }
+  }
+  const auto num_rows = static_cast<Eigen::Index>(row_of.size());
+  Eigen::MatrixXd gradients =
+      Eigen::MatrixXd::Zero(num_rows, static_cast<Eigen::Index>(reached.size()));
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(num_rows);
+  for (const auto& [variable, row] : row_of) right[row] = force[variable];
+  Eigen::Index column = 0;
+  for (const std::size_t i : reached) {
+    for (const auto& [variable, value] : linear[i].coefficients) {
+      gradients(row_of[variable], column) += value;
+    }
+    ++column;
+  }
+  std::set<std::string> names;
+  if (reached.empty()) return names;
+  const Eigen::VectorXd factors = LeastSquares(gradients, right);
+  constexpr double kNoPart = 1e-9;
+  column = 0;
+  for (const std::size_t i : reached) {
+    const double share = std::abs(factors[column]) * gradients.col(column).norm();
+    if (share > kNoPart * right.norm()) names.insert(linear[i].name);
+    ++column;
+  }
+  return names;
+}
+
+std::string Listed(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "\"" : " and \"") + name + "\"";
+  return text;
+}
+
+/// Of equations whose combination does not depend on the free variables and is not zero.
+std::string ContradictionMessage(const ConstraintFamily& constraints,
+                                 const Eigen::VectorXd& combination, const Linearized& all,
+                                 const std::vector<LinearConstraint>& linear) {
+  std::set<std::string> names;
+  double largest = 0.0;
+  for (int k = 0; k < combination.size(); ++k) {
+    if (combination[k] == 0.0) continue;
+    names.insert(constraints.name(k));
+    largest = std::max(largest, std::abs(combination[k]) * all.by_all.row(k).norm());
+  }
+  // What is left of gradients that cancel each other is rounding.
+  constexpr double kRounding = 1e-9;
+  const Eigen::VectorXd force = all.by_all.transpose() * combination;
+  std::string beside;
+  if (force.norm() > kRounding * largest) beside = Listed(NamesOf(linear, force));
+  if (!beside.empty()) beside = " the linear constraints " + beside;
+  if (names.size() > 1) {
+    return "constraints " + Listed(names) + " contradict each other" +
+           (beside.empty() ? "" : " under" + beside);
+  }
+  return "constraint " + Listed(names) + " contradicts" +
+         (beside.empty() ? " the linear constraints" : beside);
 }
 
 }  // namespace
@@ -183,7 +264,8 @@ bool ProjectOntoConstraints(const Problem& problem, const Eigen::VectorXd& multi
   return true;
 }
 
-bool CheckForContradictions(const Problem& problem, std::string* error) {
+bool CheckForContradictions(const Problem& problem, const std::vector<LinearConstraint>& linear,
+                            std::string* error) {
   const ConstraintFamily& constraints = *problem.nonlinear_constraints();
   std::mt19937 random(20240501);
   Eigen::VectorXd y = problem.elimination().FreeVariables(problem.start());
@@ -202,11 +284,12 @@ bool CheckForContradictions(const Problem& problem, std::string* error) {
   if (!CheckOpposites(constraints, all, error)) return false;
   if (equations.empty()) return true;
   Linearized part = Part(all, equations);
+  Eigen::VectorXd norms = Eigen::VectorXd::Ones(part.h.size());
   for (Eigen::Index i = 0; i < part.h.size(); ++i) {
     const double norm = part.jacobian.row(i).norm();
-    if (norm <= kConstraintTolerance) continue;
-    part.jacobian.row(i) /= norm;
-    part.h[i] /= norm;
+    if (norm > kConstraintTolerance) norms[i] = norm;
+    part.jacobian.row(i) /= norms[i];
+    part.h[i] /= norms[i];
   }
   // With J P = Q R of rank r the columns of Q beyond r combine the equations to 0 = h'q.
   constexpr double kDependent = 1e-9;
@@ -216,17 +299,13 @@ bool CheckForContradictions(const Problem& problem, std::string* error) {
   Eigen::Index rank = 0;
   while (rank < most && std::abs(qr.matrixR()(rank, rank)) > kDependent) ++rank;
   for (Eigen::Index i = rank; i < q.cols(); ++i) {
-    const Eigen::VectorXd combination = q.col(i);
-    if (std::abs(combination.dot(part.h)) <= kDependent) continue;
-    std::set<std::string> names;
-    for (Eigen::Index k = 0; k < combination.size(); ++k) {
-      if (std::abs(combination[k]) <= kDependent) continue;
-      names.insert("\"" + constraints.name(equations[static_cast<std::size_t>(k)]) + "\"");
+    if (std::abs(q.col(i).dot(part.h)) <= kDependent) continue;
+    Eigen::VectorXd combination = Eigen::VectorXd::Zero(constraints.size());
+    for (Eigen::Index k = 0; k < q.rows(); ++k) {
+      if (std::abs(q(k, i)) <= kDependent) continue;
+      combination[equations[static_cast<std::size_t>(k)]] = q(k, i) / norms[k];
     }
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : " and ") + name;
-    *error = names.size() == 1 ? "constraint " + text + " contradicts the linear constraints"
-                               : "constraints " + text + " contradict each other";
+    *error = ContradictionMessage(constraints, combination, all, linear);
     return false;
   }
   return true;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "problems/problem.h"
 
@@ -38,10 +39,11 @@ bool MakeLagrangianGradient(const Problem& problem, const Eigen::VectorXd& x,
 bool ProjectOntoConstraints(const Problem& problem, const Eigen::VectorXd& multipliers,
                             Eigen::VectorXd* y);
 
-/// Whether equations contradict each other or the linear constraints wherever the variables are:
-/// some combination of them does not depend on the free variables and is not zero. False then, with
-/// one sentence that names them in `error`.
-bool CheckForContradictions(const Problem& problem, std::string* error);
+/// Whether no equations contradict each other or the problem's `linear` constraints wherever the
+/// variables are: a combination of them that does not depend on the free variables and is not zero.
+/// Else false, with one sentence that names them, linear ones too, in `error`.
+bool CheckForContradictions(const Problem& problem, const std::vector<LinearConstraint>& linear,
+                            std::string* error);
 
 }  // namespace batten
 

@@ -233,7 +233,7 @@ bool AddConditions(const CurveFit& fit, const std::vector<LinearConstraint>& lin
   }
   problem->SetNonlinearConstraints(
       std::make_shared<CurveConditionFamily>(fit.setting(), std::move(made.conditions)));
-  return CheckForContradictions(*problem, error);
+  return CheckForContradictions(*problem, linear, error);
 }
 
 }  // namespace

@@ -74,9 +74,13 @@ std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
 }
 
 std::string WhyNotPlainInterpolation(const Objective& objective, const std::string& solver_name) {
+  const Problem& problem = objective.problem();
+  // Linear ones neither: what says so for solvers that hold those would be wrong here.
+  if (problem.nonlinear_constraints() != nullptr) {
+    return solver_name + " takes no constraints; use augmented_lagrangian:lbfgs";
+  }
   std::string why = WhyNoUnboundedCurveView(objective, solver_name);
   if (!why.empty()) return why;
-  const Problem& problem = objective.problem();
   const CurveFit* fit = problem.curve_fit();
   if (fit == nullptr || problem.terms().size() != 1 || problem.terms()[0].family->weight() != 1.0 ||
       fit->data().weights.has_value() || NameOf(problem.terms()[0].name) != "interpolation") {

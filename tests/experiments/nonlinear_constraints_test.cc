@@ -19,6 +19,7 @@
 namespace batten {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 /// What constraints that are not linear hold to, in units of the data's size.
@@ -384,8 +385,11 @@ TEST(NonlinearConstraints, ThatContradictEachOtherAreNamed) {
               HasSubstr("contradict"));
   EXPECT_THAT(WhyNot(Constrained(3, 8, "tangent/t=0.4/x=1/y=2,derivative/t=0.4/x=-1/y=-2")),
               HasSubstr("constraint \"tangent/t=0.4/x=1/y=2\" contradicts the linear constraints"));
-  EXPECT_EQ(WhyNot(Constrained(3, 8, "natural/end=begin,curvature/t=0/kappa=1")),
-            "constraint \"curvature/t=0/kappa=1\" contradicts the linear constraints");
+  EXPECT_THAT(WhyNot(Constrained(3, 8, "tangent/t=0.4/x=1/y=0,ends,derivative/t=0.4/x=-1/y=0")),
+              EndsWith("contradicts the linear constraints \"derivative/t=0.4/x=-1/y=0 (x)\""));
+  EXPECT_EQ(WhyNot(Constrained(3, 8, "natural,ends,curvature/t=0/kappa=1")),
+            "constraint \"curvature/t=0/kappa=1\" contradicts the linear constraints \"natural at "
+            "the begin (x)\" and \"natural at the begin (y)\"");
   EXPECT_EQ(WhyNot(Constrained(3, 8, "point/free=2/x=0/y=1,point/free=2/x=0/y=2")),
             "constraints \"point/free=2/x=0/y=1\" and \"point/free=2/x=0/y=2\" contradict each "
             "other");

@@ -63,6 +63,12 @@ TEST(FitCommand, RefusesBadConstraintsThatAreNotLinear) {
                 {"contradict each other"});
   const Ended plain = RunBatten(FitBow("curvature/t=0.5/kappa=0.1", "lbfgs"), kBow);
   ExpectRefused(plain, {"lbfgs holds linear constraints only; use augmented_lagrangian:lbfgs"});
+  for (const char* solver : {"gim", "preconditioned_pia", "extended_pia"}) {
+    ExpectRefused(RunBatten({"fit", "-", "--control_points=9", "--solver=" + std::string(solver),
+                             "--constraints=tangent/t=0.5/x=1/y=0"},
+                            kBow),
+                  {solver, " takes no constraints; use augmented_lagrangian:lbfgs"});
+  }
   ExpectRefused(
       RunBatten(FitBow("curvature/t=0.5/kappa=0.1", "augmented_lagrangian:banded_qr"), kBow),
       {"augmented_lagrangian:banded_qr needs terms that are affine"});
