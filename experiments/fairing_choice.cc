@@ -101,6 +101,15 @@ bool FromString(const std::string& text, FairingRule* rule) {
   return false;
 }
 
+std::string FairingChoiceWarning(const FairingChoice& choice) {
+  if (choice.end == 0) return "";
+  const std::string end = choice.end < 0 ? "lightest" : "heaviest";
+  return "fairing=" + std::string(ToString(choice.rule)) + " is best at the " + end +
+         " weight that it judges: the data ask for " +
+         (choice.end < 0 ? "no fairing that it could tell from none"
+                         : "the fairest curve there is");
+}
+
 bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, FitSpec* spec,
                          FairingChoice* choice, std::string* error) {
   std::size_t fairing = 0;

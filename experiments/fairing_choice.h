@@ -30,8 +30,16 @@ struct FairingSample {
 struct FairingChoice {
   FairingRule rule = FairingRule::kGcv;
   double weight = 0.0;
-  std::vector<FairingSample> samples;  ///< All that were tried, by weight.
+  FairingSample chosen;  ///< That of the weight.
+  /// Standard deviation of each coordinate that the residuals show, sqrt(RSS / (d (m - trace))), in
+  /// the user's units; NaN where they have no freedom.
+  double noise = 0.0;
+  /// At which end of the scan the weight lies: -1 the data's, 1 the fair one, 0 at none.
+  int end = 0;
+  std::vector<FairingSample> samples;  ///< All that were tried, by weight: one solve each.
 };
+/// One sentence about a choice at an end of the scan; empty where it is at none.
+std::string FairingChoiceWarning(const FairingChoice& choice);
 
 /// Sets the weight of the one fairing term of `spec`, adding one of derivative 2 where there is
 /// none. `noise`: standard deviation of each coordinate in the user's units, for discrepancy. Each

@@ -33,10 +33,23 @@ class Chooser {
     choice->samples = samples_;
     std::sort(choice->samples.begin(), choice->samples.end(),
               [](const auto& a, const auto& b) { return a.weight < b.weight; });
+    Describe(choice);
     return true;
   }
 
  private:
+  void Describe(FairingChoice* choice) const {
+    bool is_lightest = true, is_heaviest = true;
+    for (const FairingSample& sample : choice->samples) {
+      if (sample.weight == choice->weight) choice->chosen = sample;
+      const bool is_judged = std::isfinite(sample.score);
+      if (is_judged && sample.weight < choice->weight) is_lightest = false;
+      if (is_judged && sample.weight > choice->weight) is_heaviest = false;
+    }
+    choice->end = is_lightest ? -1 : is_heaviest ? 1 : 0;
+    choice->noise = std::sqrt(choice->chosen.residual / (num_residuals_ * Freedom(choice->chosen)));
+  }
+
   static constexpr double kLCurveStep = 0.5;  // decades
 
   /// At 10^log_weight; infinite score where there is no answer or no freedom is left.

@@ -93,6 +93,20 @@ Json FairnessJson(const FitReport& report) {
           {"num_inflections", plane ? Json(fairness.num_inflections) : Json(nullptr)}};
 }
 
+Json FairingChoiceJson(const FitReport& report) {
+  if (!report.fairing_choice.has_value()) return nullptr;
+  const FairingChoice& choice = *report.fairing_choice;
+  return {{"rule", ToString(choice.rule)},
+          {"weight", choice.weight},
+          {"score", choice.chosen.score},
+          {"residual", choice.chosen.residual},
+          {"bend", choice.chosen.bend},
+          {"effective_control_points", choice.chosen.trace},
+          {"noise", choice.noise},
+          {"solves", choice.samples.size()},
+          {"warning", FairingChoiceWarning(choice)}};
+}
+
 /// Everything of fit.json but the spline and the parameters, which may be long.
 Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
             const FitReport& report) {
@@ -113,6 +127,10 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
                       {"num_ties", report.num_ties.has_value() ? Json(*report.num_ties) : Json()}};
   json["shape"] = ShapeJson(report);
   json["fairness"] = FairnessJson(report);
+  json["fairing_choice"] = FairingChoiceJson(report);
+  const CurveFit* const fit = problem.curve_fit();
+  const bool weighs_spans = fit != nullptr && !fit->spec().span_weights.empty();
+  json["span_weights"] = weighs_spans ? Json(fit->spec().span_weights) : Json(nullptr);
   json["solver"] = run.solver.ToString();
   json["options"] = run.options;
   json["mode"] = ToString(spec.mode);

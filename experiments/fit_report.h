@@ -8,6 +8,7 @@
 #include "experiments/audit.h"
 #include "experiments/curve_fairness.h"
 #include "experiments/curve_shape.h"
+#include "experiments/fairing_choice.h"
 #include "experiments/run.h"
 #include "problems/fit_problem.h"
 
@@ -23,8 +24,9 @@ struct FitReport {
   /// Data points that another point of the curve, farther along it, is as near to (FootPoint::tie);
   /// none where it was not looked for: in rows that were read again.
   std::optional<int> num_ties;
-  std::optional<CurveShape> shape;        // none in dimension 1, or without a curve
-  std::optional<CurveFairness> fairness;  // the same
+  std::optional<CurveShape> shape;              // none in dimension 1, or without a curve
+  std::optional<CurveFairness> fairness;        // the same
+  std::optional<FairingChoice> fairing_choice;  // where a rule chose the weight of fairing
   /// False where the audit does not apply: it knows distances from the data, end_point, end_tangent
   /// and end_curvature with any loss, fairing without one, linear constraints, and, but for |g|,
   /// the others. `audit` and `verdict` then say nothing.

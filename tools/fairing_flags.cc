@@ -69,14 +69,14 @@ bool CheckFairingFlags(std::string* error) {
   return true;
 }
 
-bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, FairingChoice* choice,
+bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, std::optional<FairingChoice>* choice,
                        std::string* error) {
   if (!ApplySpanWeights(spec, error)) return false;
   if (WasGiven("fairing_units")) ApplyUnits(spec);
   if (!WasGiven("fairing")) return true;
   FairingRule rule = FairingRule::kGcv;
   FromString(FLAGS_fairing, &rule);
-  if (ChooseFairingWeight(data, rule, FLAGS_noise, spec, choice, error)) return true;
+  if (ChooseFairingWeight(data, rule, FLAGS_noise, spec, &choice->emplace(), error)) return true;
   *error = "--" + *error;
   return false;
 }

@@ -3,6 +3,7 @@
 
 #include <gflags/gflags_declare.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ std::vector<FlagInfo> FairingFlags();
 bool CheckFairingFlags(std::string* error);
 /// Units and weights of the spans into the fairing terms, and the weight that --fairing chooses
 /// from `data`, with how in *choice.
-bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, FairingChoice* choice,
+bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, std::optional<FairingChoice>* choice,
                        std::string* error);
 
 }  // namespace batten

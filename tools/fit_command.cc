@@ -132,8 +132,7 @@ bool DrawCurvature(const Problem& problem, const RunResult& run, FileBatch* batc
 
 /// All files or none: a full disk and an interrupt leave what was there before.
 bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spec,
-                const FitReport& report, const FairingChoice& choice, Written* written,
-                std::string* error) {
+                const FitReport& report, Written* written, std::string* error) {
   FileBatch batch;
   const auto write = [&](const std::string& flag, const std::string& path, const auto& fill) {
     if (!WasGiven(flag)) return true;
@@ -155,13 +154,14 @@ bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spe
          write("iterates", FLAGS_iterates, fill_iterates) &&
          (!WasGiven("figure") || DrawFitFigure(problem, run, &batch, written, error)) &&
          (!WasGiven("curvature_figure") || DrawCurvature(problem, run, &batch, written, error)) &&
-         (!WasGiven("fairing_figure") || DrawChoice(choice, &batch, written, error)) &&
+         (!WasGiven("fairing_figure") ||
+          DrawChoice(*report.fairing_choice, &batch, written, error)) &&
          batch.Commit(error);
 }
 
 int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec& spec,
                 CommandOutput* output) {
-  FairingChoice choice;
+  std::optional<FairingChoice> choice;
   const std::unique_ptr<Problem> problem = LoadFit(request, &choice, &output->error);
   if (problem == nullptr) return kBadInput;
   RunResult run;
@@ -172,9 +172,10 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
   }
   if (!run.skipped.empty()) return Refuse("--solver: " + run.skipped, output);
 
-  const FitReport report = MeasureFit(*problem, run, spec);
+  FitReport report = MeasureFit(*problem, run, spec);
+  report.fairing_choice = std::move(choice);
   Written written;
-  if (!WriteFiles(*problem, run, spec, report, choice, &written, &output->error)) return kBadInput;
+  if (!WriteFiles(*problem, run, spec, report, &written, &output->error)) return kBadInput;
   output->results = FitSummary(request.label, *problem, run, report, written.files);
   if (report.audited && !report.verdict.holds) {
     output->error = "audit: " + solver.ToString() + " " + report.verdict.failure;
@@ -213,7 +214,7 @@ int SearchAndWrite(const FitRequest& request, CommandOutput* output) {
   const RunSpec spec;
   const FitReport report = MeasureFit(*fit.problem, fit.run, spec);
   Written written;
-  if (!WriteFiles(*fit.problem, fit.run, spec, report, {}, &written, &output->error)) {
+  if (!WriteFiles(*fit.problem, fit.run, spec, report, &written, &output->error)) {
     return kBadInput;
   }
   output->results = FitSummary(request.label, *fit.problem, fit.run, report, written.files);

@@ -273,7 +273,7 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
   return true;
 }
 
-std::unique_ptr<Problem> LoadFit(const FitRequest& request, FairingChoice* choice,
+std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::optional<FairingChoice>* choice,
                                  std::string* error) {
   std::optional<DataSet> data = LoadData(request.entry, error);
   if (!data.has_value()) return nullptr;

@@ -2,6 +2,7 @@
 #define BATTEN_TOOLS_FIT_REQUEST_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
                     std::string* error);
 
 /// Reads the data and makes the problem; null with one sentence in `error`.
-std::unique_ptr<Problem> LoadFit(const FitRequest& request, FairingChoice* choice,
+std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::optional<FairingChoice>* choice,
                                  std::string* error);
 
 }  // namespace batten

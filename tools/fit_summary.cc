@@ -108,6 +108,19 @@ std::string FairnessText(const CurveFairness& fairness) {
                                        : ", " + Plural(fairness.num_inflections, "inflection"));
 }
 
+std::string ChoiceLines(const FairingChoice& choice) {
+  const char* const score = choice.rule == FairingRule::kGcv      ? "V "
+                            : choice.rule == FairingRule::kLCurve ? "curvature of the L "
+                                                                  : "RSS over that of the noise ";
+  const std::string text = "weight " + Short(choice.weight) + " by " + ToString(choice.rule) +
+                           ": " + score + Short(choice.chosen.score) + ", " +
+                           Short(choice.chosen.trace) + " effective control points, noise " +
+                           Short(choice.noise) + "; " +
+                           Plural(static_cast<long>(choice.samples.size()), "solve");
+  const std::string warning = FairingChoiceWarning(choice);
+  return Line("fairing", text) + (warning.empty() ? "" : Line("", "warning: " + warning));
+}
+
 std::string AuditText(const FitReport& report) {
   if (!report.audited) return "none: it does not know all terms of this fit";
   if (!report.verdict.holds) return "FAILED: " + report.verdict.failure;
@@ -138,6 +151,7 @@ std::string FitSummary(const std::string& label, const Problem& problem, const R
       Line("", "rms " + Short(report.rms_orthogonal) + ", largest " + Short(report.max_orthogonal) +
                    " (orthogonal), E there " + Short(report.energy_at_foot_points));
   if (report.num_ties.value_or(0) > 0) text += Line("", Ties(*report.num_ties));
+  if (report.fairing_choice.has_value()) text += ChoiceLines(*report.fairing_choice);
   if (report.shape.has_value()) text += Line("shape", ShapeText(*report.shape));
   if (report.fairness.has_value()) text += Line("fairness", FairnessText(*report.fairness));
   if (report.audited && report.audit.num_sharing > 0) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cost_functions/options.h"
 #include "tests/tools/program.h"
 
 namespace batten {
@@ -309,6 +310,38 @@ TEST(FitCommand, ChoosesTheFairingWeightAndDrawsHow) {
   EXPECT_THAT(fit["terms"][1]["name"].get<std::string>(), HasSubstr("fairing/weight="));
   EXPECT_GT(fit["fairness"]["bending_energy"].get<double>(), 0.0);
   EXPECT_GT(fit["fairness"]["num_inflections"].get<int>(), 0);
+  const json& choice = fit["fairing_choice"];
+  EXPECT_EQ(choice["rule"], "gcv");
+  EXPECT_THAT(fit["terms"][1]["name"].get<std::string>(),
+              HasSubstr("weight=" + NumberText(choice["weight"].get<double>())));
+  EXPECT_NEAR(choice["residual"].get<double>(), fit["terms"][0]["energy"].get<double>(),
+              1e-6 * fit["terms"][0]["energy"].get<double>());
+  const double freedom = 1.0 - choice["effective_control_points"].get<double>() / 100.0;
+  const double squared = choice["residual"].get<double>() / 200.0;
+  EXPECT_NEAR(choice["score"].get<double>(), squared / (freedom * freedom), 1e-9 * squared);
+  EXPECT_NEAR(choice["noise"].get<double>(), std::sqrt(squared / freedom), 1e-9);
+  EXPECT_GE(choice["solves"].get<int>(), 3);
+  EXPECT_THAT(ended.out, HasSubstr(" by gcv: V "));
+  EXPECT_THAT(ended.out, HasSubstr(" effective control points, noise "));
+}
+
+TEST(FitCommand, WarnsOfAWeightAtAnEndOfTheScan) {
+  // Points on either side of a line in turn: the fairest curve is the best one.
+  std::string line = "t,x,y\n";
+  for (int i = 0; i < 30; ++i) {
+    const double off = i % 2 == 0 ? 1e-3 : -1e-3;
+    line += NumberText(i / 29.0) + "," + NumberText(i / 29.0 + off) + "," +
+            NumberText(2.0 * i / 29.0 - 0.7 * off) + "\n";
+  }
+  const TemporaryFolder folder;
+  const Ended ended =
+      RunBatten({"fit", "-", "--parameters=given", "--control_points=15", "--fairing=gcv",
+                 "--solver=banded_qr", "--out=" + (folder / "fit.json")},
+                line);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("warning: fairing=gcv is best at the heaviest weight"));
+  const json fit = json::parse(ReadFile(folder / "fit.json"));
+  EXPECT_THAT(fit["fairing_choice"]["warning"].get<std::string>(), HasSubstr("heaviest"));
 }
 
 TEST(FitCommand, HoldsConstraintsAndWeighsSpans) {
@@ -324,6 +357,9 @@ TEST(FitCommand, HoldsConstraintsAndWeighsSpans) {
                              "--terms=interpolation,fairing/weight=2e-3"},
                             "0 0\n1 1\n2 0\n3 3\n4 1\n5 2\n6 0\n");
   EXPECT_NEAR(spans["energy"].get<double>(), term["energy"].get<double>(), 1e-13);
+  EXPECT_EQ(spans["span_weights"], json({2.0, 2.0, 2.0}));
+  EXPECT_TRUE(term["span_weights"].is_null());
+  EXPECT_TRUE(term["fairing_choice"].is_null());
 }
 
 }  // namespace
