@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "splines/basis_functions.h"
 #include "splines/gauss_legendre.h"
@@ -57,45 +58,60 @@ CurvatureSample MakeSample(const BsplineCurve& curve, int span, double t, double
   return sample;
 }
 
-/// Counts turns of a sequence that go back by more than a threshold.
+/// Counts events along the curve and keeps the places of the first ones.
+class PlaceList {
+ public:
+  void Add(double t) {
+    if (count_++ < CurveFairness::kMostPlaces) places.push_back(t);
+  }
+  int count() const { return count_; }
+  std::vector<double> places;
+
+ private:
+  int count_ = 0;
+};
+
+/// Turns of a sequence that go back by more than a threshold.
 class TurnCounter {
  public:
   explicit TurnCounter(double threshold) : threshold_(threshold) {}
-  void Add(double value) {
-    if (!has_value_) low_ = high_ = value;
+  void Add(const CurvatureSample& sample) {
+    const double value = sample.kappa;
+    if (!has_value_) low_ = high_ = sample;
     has_value_ = true;
-    low_ = std::min(low_, value);
-    high_ = std::max(high_, value);
-    if (direction_ <= 0 && value > low_ + threshold_) Turn(1, value);
-    if (direction_ >= 0 && value < high_ - threshold_) Turn(-1, value);
+    if (value < low_.kappa) low_ = sample;
+    if (value > high_.kappa) high_ = sample;
+    if (direction_ <= 0 && value > low_.kappa + threshold_) Turn(1, low_.t, sample);
+    if (direction_ >= 0 && value < high_.kappa - threshold_) Turn(-1, high_.t, sample);
   }
-  int count() const { return count_; }
+  PlaceList turns;
 
  private:
-  void Turn(int direction, double value) {
-    if (direction_ != 0) ++count_;
+  void Turn(int direction, double extremum, const CurvatureSample& sample) {
+    if (direction_ != 0) turns.Add(extremum);
     direction_ = direction;
-    low_ = high_ = value;
+    low_ = high_ = sample;
   }
 
   double threshold_;
   bool has_value_ = false;
-  double low_ = 0.0;
-  double high_ = 0.0;
+  CurvatureSample low_;
+  CurvatureSample high_;
   int direction_ = 0;
-  int count_ = 0;
 };
 
-int SignChanges(const std::vector<CurvatureSample>& samples, double threshold) {
-  int count = 0;
-  int sign = 0;
+PlaceList SignChanges(const std::vector<CurvatureSample>& samples, double threshold) {
+  PlaceList changes;
+  const CurvatureSample* last = nullptr;  // the last one that has a sign
   for (const CurvatureSample& sample : samples) {
-    const int now = sample.kappa > threshold ? 1 : sample.kappa < -threshold ? -1 : 0;
-    if (now == 0) continue;
-    if (sign != 0 && now != sign) ++count;
-    sign = now;
+    if (!(std::abs(sample.kappa) > threshold)) continue;
+    if (last != nullptr && (last->kappa > 0.0) != (sample.kappa > 0.0)) {
+      const double share = last->kappa / (last->kappa - sample.kappa);
+      changes.Add(last->t + share * (sample.t - last->t));
+    }
+    last = &sample;
   }
-  return count;
+  return changes;
 }
 
 int NumSpans(const BsplineBasis& basis) {
@@ -175,10 +191,15 @@ CurveFairness MeasureFairness(const BsplineCurve& curve) {
     fairness.curvature_variation += std::abs(samples.front().kappa - samples.back().kappa);
   }
   const double threshold = 1e-6 * fairness.max_curvature;
-  TurnCounter turns(threshold);
-  for (const CurvatureSample& sample : samples) turns.Add(sample.kappa);
-  fairness.num_curvature_extrema = turns.count();
-  if (curve.dimension() == 2) fairness.num_inflections = SignChanges(samples, threshold);
+  TurnCounter counter(threshold);
+  for (const CurvatureSample& sample : samples) counter.Add(sample);
+  fairness.num_curvature_extrema = counter.turns.count();
+  fairness.curvature_extrema = std::move(counter.turns.places);
+  if (curve.dimension() == 2) {
+    PlaceList changes = SignChanges(samples, threshold);
+    fairness.num_inflections = changes.count();
+    fairness.inflections = std::move(changes.places);
+  }
   return fairness;
 }
 

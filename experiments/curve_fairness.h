@@ -35,6 +35,11 @@ struct CurveFairness {
   int num_curvature_extrema = 0;
   /// In the plane: changes of the sign of kappa, by as much. -1 in other dimensions.
   int num_inflections = -1;
+  /// Parameters of the extrema and inflections, in order, the first kMostPlaces of each: of extrema
+  /// the sample that is highest or lowest, of inflections where the line between samples is zero.
+  static constexpr int kMostPlaces = 1000;
+  std::vector<double> curvature_extrema;
+  std::vector<double> inflections;
 };
 CurveFairness MeasureFairness(const BsplineCurve& curve);
 

@@ -90,7 +90,9 @@ Json FairnessJson(const FitReport& report) {
           {"max_curvature", fairness.max_curvature},
           {"max_curvature_at", fairness.max_curvature_at},
           {"num_curvature_extrema", fairness.num_curvature_extrema},
-          {"num_inflections", plane ? Json(fairness.num_inflections) : Json(nullptr)}};
+          {"num_inflections", plane ? Json(fairness.num_inflections) : Json(nullptr)},
+          {"curvature_extrema", fairness.curvature_extrema},
+          {"inflections", plane ? Json(fairness.inflections) : Json(nullptr)}};
 }
 
 Json FairingChoiceJson(const FitReport& report) {

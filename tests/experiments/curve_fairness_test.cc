@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/curvature_figure.h"
@@ -69,12 +70,35 @@ TEST(CurveFairness, CountsInflectionsInThePlaneOnly) {
   const CurveFairness fairness = MeasureFairness(BsplineCurve(basis, plane));
   EXPECT_EQ(fairness.num_inflections, 1);
   EXPECT_EQ(fairness.num_curvature_extrema, 2);
+  ASSERT_EQ(fairness.inflections.size(), 1U);
+  EXPECT_NEAR(fairness.inflections[0], 0.0, 1e-12);
+  // Where 45 t^4 - 12 t^2 - 2 = 0; it is read at 32 places over a length of 2.
+  const double extremum = std::sqrt((12.0 + std::sqrt(504.0)) / 90.0);
+  ASSERT_EQ(fairness.curvature_extrema.size(), 2U);
+  EXPECT_NEAR(fairness.curvature_extrema[0], -extremum, 2.0 / 32.0);
+  EXPECT_NEAR(fairness.curvature_extrema[1], extremum, 2.0 / 32.0);
   Points space = Points::Zero(4, 3);
   space.leftCols(2) = plane;
   const CurveFairness lifted = MeasureFairness(BsplineCurve(basis, space));
   EXPECT_EQ(lifted.num_inflections, -1);
+  EXPECT_TRUE(lifted.inflections.empty());
   EXPECT_NEAR(lifted.bending_energy, fairness.bending_energy, 1e-12 * fairness.bending_energy);
   EXPECT_NEAR(lifted.max_curvature, fairness.max_curvature, 1e-12 * fairness.max_curvature);
+}
+
+TEST(CurveFairness, KeepsTheFirstThousandPlacesOnly) {
+  constexpr int kZigzags = 3000;
+  std::vector<double> knots(4, 0.0);
+  for (int i = 1; i < kZigzags - 3; ++i) knots.push_back(i);
+  knots.insert(knots.end(), 4, kZigzags - 3.0);
+  Points points(kZigzags, 2);
+  for (int i = 0; i < kZigzags; ++i) points.row(i) << i, i % 2;
+  const CurveFairness fairness =
+      MeasureFairness(BsplineCurve(BasisOf(3, false, std::move(knots)), points));
+  EXPECT_GT(fairness.num_inflections, kZigzags - 10);
+  EXPECT_EQ(fairness.inflections.size(), 1000U);
+  EXPECT_EQ(fairness.curvature_extrema.size(), 1000U);
+  EXPECT_TRUE(std::is_sorted(fairness.inflections.begin(), fairness.inflections.end()));
 }
 
 TEST(CurveFairness, OfAStraightLineIsNothing) {

@@ -310,6 +310,8 @@ TEST(FitCommand, ChoosesTheFairingWeightAndDrawsHow) {
   EXPECT_THAT(fit["terms"][1]["name"].get<std::string>(), HasSubstr("fairing/weight="));
   EXPECT_GT(fit["fairness"]["bending_energy"].get<double>(), 0.0);
   EXPECT_GT(fit["fairness"]["num_inflections"].get<int>(), 0);
+  EXPECT_EQ(fit["fairness"]["inflections"].size(), fit["fairness"]["num_inflections"]);
+  EXPECT_EQ(fit["fairness"]["curvature_extrema"].size(), fit["fairness"]["num_curvature_extrema"]);
   const json& choice = fit["fairing_choice"];
   EXPECT_EQ(choice["rule"], "gcv");
   EXPECT_THAT(fit["terms"][1]["name"].get<std::string>(),
