@@ -23,6 +23,20 @@ std::string DigitsWarning(const Points& control_points) {
          std::to_string(std::max(0, static_cast<int>(digits))) + " digits of the curve are sure";
 }
 
+/// Roundings of the heaviest rows pull like data of their own: on what these rows leave free, such
+/// as the line that a heavy fairing leads to, by their square beside the square of the lightest
+/// diagonal entry of R.
+std::string HeavyRowsWarning(double diagonal_ratio) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  constexpr double kOutweighed = 32.0 * kEpsilon;
+  if (!(diagonal_ratio < kOutweighed)) return "";
+  const double digits = 2.0 * std::log10(diagonal_ratio / kEpsilon);
+  return "the heaviest rows outweigh the lightest so far that their roundings count like data: "
+         "about " +
+         std::to_string(std::max(0, static_cast<int>(digits))) +
+         " digits of what the heavy ones leave free are sure; use a smaller weight";
+}
+
 /// Which control points lack data, where a fit of data points alone does.
 std::string ShortageText(const Problem& problem) {
   const CurveFit* fit = problem.curve_fit();
@@ -54,7 +68,11 @@ Outcome BandedQrSolver::SolveRows(const CurveView& view, const Problem& problem,
   *x = Eigen::Map<const Eigen::VectorXd>(solution.control_points.data(), x->size());
   context->Note("smallest over largest diagonal entry of R", NumberText(solution.diagonal_ratio));
   const std::string far_off = DigitsWarning(solution.control_points);
-  if (solution.unique) return {StopReason::kSolved, far_off};
+  if (solution.unique) {
+    const std::string outweighed = HeavyRowsWarning(solution.diagonal_ratio);
+    return {StopReason::kSolved,
+            outweighed + (outweighed.empty() || far_off.empty() ? "" : "; ") + far_off};
+  }
   context->OffTheClock([&] {
     const std::string shortage = ShortageText(problem);
     if (!shortage.empty()) context->Note("Schoenberg-Whitney conditions", shortage);

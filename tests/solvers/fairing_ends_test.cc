@@ -117,6 +117,26 @@ TEST(FairingEnds, HeavyFairingLeadsToTheNearestPolynomialAndOfClosedCurvesToAPoi
   }
 }
 
+TEST(FairingEnds, FairingTooHeavyForTheLineIsSaidToBe) {
+  // The weight at which what is found and the line part is where it has to be said.
+  for (const double weight : {1e16, 1e20, 1e22, 1e24, 1e26, 1e28, 1e30}) {
+    SCOPED_TRACE(weight);
+    const auto problem = MakeSmoothing(false, 200, 200, 2, weight);
+    const SolverTrial trial(*problem, "banded_qr");
+    EXPECT_EQ(trial.outcome.reason, StopReason::kSolved);
+    const FairEnd end = MakeFairEnd(
+        DenseTerms(*problem), PolynomialControlPoints(problem->curve_fit()->basis(), 2), weight);
+    const Eigen::Map<const Points> found(trial.x.data(), 200, 2);
+    const double distance = (found - end.limit).cwiseAbs().maxCoeff();
+    const bool is_said = trial.outcome.message.find("outweigh") != std::string::npos;
+    EXPECT_TRUE(is_said || distance <= 1e-2) << distance;
+    EXPECT_EQ(is_said, weight >= 1e24) << distance;
+    if (weight >= 1e28) {
+      EXPECT_THAT(trial.outcome.message, ::testing::HasSubstr("about 0 digits"));
+    }
+  }
+}
+
 TEST(FairingEnds, LightFairingLeadsToTheCurveWithoutIt) {
   for (const bool closed : {false, true}) {
     for (const int n : {40, 50}) {
