@@ -71,7 +71,7 @@ std::vector<std::string> FairnessCells(const Problem& problem, const Eigen::Vect
           NumberText(fairness.curvature_variation),
           NumberText(fairness.max_curvature),
           std::to_string(fairness.num_curvature_extrema),
-          std::to_string(fairness.num_inflections)};
+          fairness.num_inflections < 0 ? "" : std::to_string(fairness.num_inflections)};
 }
 
 std::vector<std::string> CurveColumns() { return {"shape", "setting", "s", "x", "y", "kappa"}; }

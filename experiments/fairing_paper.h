@@ -38,7 +38,7 @@ std::shared_ptr<const Problem> SourceFit(const Points& points, double alpha, dou
 /// Columns of FairnessCells.
 std::vector<std::string> FairnessColumns();
 /// rms of the residuals, largest residual, bending energy, variation of the curvature, largest
-/// curvature, extrema, inflections of a fit at x.
+/// curvature, extrema, inflections (empty but in the plane) of a fit at x.
 std::vector<std::string> FairnessCells(const Problem& problem, const Eigen::VectorXd& x);
 
 /// Rows "setting, s, x, y, kappa": the curve and its curvature, `most` samples or some more.

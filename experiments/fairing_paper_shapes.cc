@@ -79,14 +79,14 @@ bool RunShapes(const ExperimentRun& run, ExperimentTables* tables, std::string* 
   return true;
 }
 
-/// Of each shape: value of `column` with the setting over that of the interpolating curve.
+/// Of each shape: value of `column` with the setting over that with another one.
 std::vector<double> Ratios(const ExperimentTables& tables, const std::string& setting,
-                           const std::string& column) {
+                           const std::string& column, const std::string& other = "interpolation") {
   std::vector<double> ratios;
   for (const Shape& shape : kShapes) {
     const CsvTable rows = tables.at("").Where("shape", shape.name);
     const CsvTable with = rows.Where("setting", setting);
-    const CsvTable without = rows.Where("setting", "interpolation");
+    const CsvTable without = rows.Where("setting", other);
     if (with.num_rows() != 1 || without.num_rows() != 1) return {};
     ratios.push_back(with.Number(0, column) / without.Number(0, column));
   }
@@ -99,11 +99,6 @@ std::string Listed(const std::vector<double>& values, int decimals) {
   return text;
 }
 
-bool All(const std::vector<double>& values, double low, double high) {
-  return std::all_of(values.begin(), values.end(),
-                     [&](double value) { return value >= low && value <= high; });
-}
-
 std::vector<double> Moves(const ExperimentTables& tables, const std::string& setting) {
   const CsvTable rows = tables.at("").Where("setting", setting);
   std::vector<double> moves = rows.Numbers("largest_move");
@@ -111,15 +106,38 @@ std::vector<double> Moves(const ExperimentTables& tables, const std::string& set
   return moves;
 }
 
-Judgement Decide(const std::vector<double>& first, double low, double high,
-                 const std::vector<double>& second, double second_low, double second_high,
-                 const std::string& because) {
+/// Names of the shapes whose bending energy or largest curvature rises, as a sentence's end.
+std::string Risen(const std::vector<double>& energy, const std::vector<double>& sharpest) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(energy.size(), sharpest.size()); ++i) {
+    for (const auto& [name, value] :
+         {std::pair("bending energy", energy[i]), {"largest curvature", sharpest[i]}}) {
+      if (!(value > 1.0)) continue;
+      text += (text.empty() ? ": " : ", ") + std::string("the ") + name + " rises on the " +
+              kShapes[i].name;
+    }
+  }
+  return text;
+}
+
+/// One number of each shape, and the most that it may be.
+struct Bounded {
+  std::vector<double> values;
+  double high;
+};
+
+/// Holds if all of all shapes are within their bounds, in part if some of the shapes' are.
+Judgement JudgeAll(const std::vector<Bounded>& parts, const std::string& because) {
   Judgement judgement;
-  if (first.size() != std::size(kShapes) || second.size() != std::size(kShapes)) return judgement;
-  const bool one = All(first, low, high);
-  const bool two = All(second, second_low, second_high);
-  judgement.verdict = one && two   ? ClaimVerdict::kHolds
-                      : one || two ? ClaimVerdict::kInPart
+  std::ptrdiff_t count = 0;
+  for (const Bounded& part : parts) {
+    if (part.values.size() != std::size(kShapes)) return judgement;
+    count += std::count_if(part.values.begin(), part.values.end(),
+                           [&](double value) { return value <= part.high; });
+  }
+  const auto all = static_cast<std::ptrdiff_t>(parts.size() * std::size(kShapes));
+  judgement.verdict = count == all ? ClaimVerdict::kHolds
+                      : count > 0  ? ClaimVerdict::kInPart
                                    : ClaimVerdict::kDoesNotHold;
   judgement.because = because;
   return judgement;
@@ -128,23 +146,15 @@ Judgement Decide(const std::vector<double>& first, double low, double high,
 Judgement JudgeSmall(const ExperimentTables& tables) {
   const std::vector<double> moves = Moves(tables, "0.01 : 1");
   const std::vector<double> variation = Ratios(tables, "0.01 : 1", "curvature_variation");
-  return Decide(moves, 0.0, 0.01, variation, 0.0, 1.0,
-                "track, airfoil and coast move by at most " + Listed(moves, 4) +
-                    " of their size; the variation of their curvature is " + Listed(variation, 2) +
-                    " of the interpolating curve's");
-}
-
-/// Holds if all of the shapes' values are at most `high`, in part if some are.
-Judgement JudgeShare(const std::vector<double>& values, double high, const std::string& because) {
-  Judgement judgement;
-  if (values.size() != std::size(kShapes)) return judgement;
-  const auto count =
-      std::count_if(values.begin(), values.end(), [high](double value) { return value <= high; });
-  judgement.verdict = count == static_cast<std::ptrdiff_t>(values.size()) ? ClaimVerdict::kHolds
-                      : count > 0                                         ? ClaimVerdict::kInPart
-                                  : ClaimVerdict::kDoesNotHold;
-  judgement.because = because;
-  return judgement;
+  const std::vector<double> energy = Ratios(tables, "0.01 : 1", "bending_energy");
+  const std::vector<double> sharpest = Ratios(tables, "0.01 : 1", "max_curvature");
+  constexpr double kOfSize = 0.01;
+  return JudgeAll({{moves, kOfSize}, {variation, 1.0}, {energy, 1.0}, {sharpest, 1.0}},
+                  "track, airfoil and coast move by at most " + Listed(moves, 4) +
+                      " of their size; of the interpolating curve's the variation of their "
+                      "curvature is " +
+                      Listed(variation, 2) + ", their bending energy " + Listed(energy, 2) +
+                      ", their largest curvature " + Listed(sharpest, 2) + Risen(energy, sharpest));
 }
 
 constexpr double kVisibly = 0.5;
@@ -152,19 +162,26 @@ constexpr double kVisibly = 0.5;
 Judgement JudgeEqual(const ExperimentTables& tables) {
   const std::vector<double> small = Ratios(tables, "0.01 : 1", "curvature_variation");
   const std::vector<double> variation = Ratios(tables, "1 : 1", "curvature_variation");
-  return JudgeShare(variation, kVisibly,
-                    "the variation of the curvature is " + Listed(variation, 2) +
-                        " of the interpolating curve's; it was " + Listed(small, 2) +
-                        " at 0.01 : 1");
+  return JudgeAll({{variation, kVisibly}},
+                  "the variation of the curvature is " + Listed(variation, 2) +
+                      " of the interpolating curve's; it was " + Listed(small, 2) + " at 0.01 : 1");
 }
 
 Judgement JudgeLarge(const ExperimentTables& tables) {
   const std::vector<double> sharpest = Ratios(tables, "1 : 0.01", "max_curvature");
   const std::vector<double> moves = Moves(tables, "1 : 0.01");
-  return JudgeShare(sharpest, kVisibly,
-                    "the largest curvature is " + Listed(sharpest, 3) +
-                        " of the interpolating curve's; the curves move by up to " +
-                        Listed(moves, 3) + " of their size");
+  const std::vector<double> against_equal =
+      Ratios(tables, "1 : 0.01", "curvature_variation", "1 : 1");
+  std::string text = "the largest curvature is " + Listed(sharpest, 3) +
+                     " of the interpolating curve's; the variation of the curvature is " +
+                     Listed(against_equal, 2) + " of that at 1 : 1";
+  for (std::size_t i = 0; i < against_equal.size(); ++i) {
+    if (against_equal[i] > 1.0) {
+      text += std::string(": the ") + kShapes[i].name + " is less steady than at 1 : 1";
+    }
+  }
+  return JudgeAll({{sharpest, kVisibly}, {against_equal, 1.0}},
+                  text + "; the curves move by up to " + Listed(moves, 3) + " of their size");
 }
 
 ExperimentFigure FigureOf(const Shape& shape) {
@@ -194,15 +211,16 @@ Experiment FairingPaperShapes() {
   experiment.claims = {
       {"at alpha / beta = 0.01 the curves hardly differ and the curvature gets a little steadier",
        "figures of the three shapes",
-       "holds if all three move by at most 1 % of their size and the variation of their curvature "
-       "falls; in part if one of both",
+       "holds if all three move by at most 1 % of their size and neither the variation of their "
+       "curvature nor their bending energy nor their largest curvature rises; in part if some",
        &JudgeSmall},
       {"at 1 the curvature is visibly steadier", "the same",
        "holds if the variation of the curvature falls to half or less for all three; in part for "
        "some",
        &JudgeEqual},
       {"at 100 tight bends are smoothed", "the same",
-       "holds if the largest curvature falls to half or less for all three; in part for some",
+       "holds if the largest curvature falls to half or less for all three and the curvature "
+       "varies no more than at 1; in part for some",
        &JudgeLarge}};
   for (const Shape& shape : kShapes) experiment.figures.push_back(FigureOf(shape));
   return experiment;

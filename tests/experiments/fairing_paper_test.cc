@@ -35,8 +35,9 @@ TEST(FairingPaper, JudgesTheBump) {
 
 /// Alike for all shapes but the coast.
 ExperimentTables ShapeTables(const std::string& setting, double move, double variation,
-                             double curvature, double coast_factor) {
-  CsvTable table({"shape", "setting", "largest_move", "curvature_variation", "max_curvature"});
+                             double curvature, double coast_factor, double bending = 1.0) {
+  CsvTable table({"shape", "setting", "largest_move", "curvature_variation", "max_curvature",
+                  "bending_energy"});
   for (const char* shape : {"track", "airfoil", "coast"}) {
     const double factor = std::string(shape) == "coast" ? coast_factor : 1.0;
     for (const FairingRatio& ratio : kFairingRatios) {
@@ -45,7 +46,8 @@ ExperimentTables ShapeTables(const std::string& setting, double move, double var
       const double scale = asked ? factor : 1.0;
       table.AddRow({shape, ratio.name, NumberText(plain ? 0.0 : move * scale),
                     NumberText(asked ? variation * scale : 1.0),
-                    NumberText(asked ? curvature * scale : 1.0)});
+                    NumberText(asked ? curvature * scale : 1.0),
+                    NumberText(asked ? bending * scale : 1.0)});
     }
   }
   return {{"", table}};
@@ -55,17 +57,28 @@ TEST(FairingPaper, JudgesWhatTheWeightsDo) {
   const Experiment shapes = FairingPaperShapes();
   // Data are 100 long: a move of 1 is one per cent.
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1), 0), kHolds);
-  EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1.2), 0), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 0.9, 0.9, 1, 1.2), 0), kInPart);
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 1.1, 0.9, 1, 1), 0), kInPart);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("0.01 : 1", 1.1, 1.1, 1.1, 1, 1.1), 0), kDoesNotHold);
+  // What rises on one shape is in the verdict and in its reason.
+  const Judgement risen = shapes.claims[0].judge(ShapeTables("0.01 : 1", 0.8, 0.8, 0.9, 1.2, 0.9));
+  EXPECT_EQ(risen.verdict, kInPart);
+  EXPECT_THAT(risen.because,
+              ::testing::EndsWith(": the bending energy rises on the coast, the largest curvature "
+                                  "rises on the coast"));
+  const Judgement uneven = shapes.claims[2].judge(ShapeTables("1 : 0.01", 1, 0.9, 0.1, 3));
+  EXPECT_EQ(uneven.verdict, kInPart);
+  EXPECT_THAT(uneven.because, ::testing::HasSubstr(": the coast is less steady than at 1 : 1"));
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 1", 1, 0.4, 1, 1), 1), kHolds);
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 1", 1, 0.4, 1, 2), 1), kInPart);
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 1", 1, 0.6, 1, 1), 1), kDoesNotHold);
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 1), 2), kHolds);
   EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1, 0.4, 2), 2), kInPart);
-  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1, 0.6, 1), 2), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1.1, 0.6, 1), 2), kDoesNotHold);
+  EXPECT_EQ(VerdictOn(shapes, ShapeTables("1 : 0.01", 1, 1.1, 0.4, 1), 2), kInPart);
   EXPECT_EQ(VerdictOn(shapes,
                       {{"", CsvTable({"shape", "setting", "largest_move", "curvature_variation",
-                                      "max_curvature"})}},
+                                      "max_curvature", "bending_energy"})}},
                       1),
             kUndecided);
 }
@@ -165,6 +178,8 @@ TEST(FairingPaper, ControlPointsAreTheSourcesFormula) {
       for (int i = 0; i < m; ++i) points(i, 0) += 1.5 * i;
       for (const FairingRatio& ratio : kFairingRatios) {
         const auto problem = SourceFit(points, ratio.alpha, ratio.beta);
+        // Inflections are counted in the plane; elsewhere there is no number.
+        EXPECT_EQ(FairnessCells(*problem, problem->start()).back().empty(), dimension == 3);
         const Points expected = SourceFormula(points, ratio.alpha, ratio.beta);
         for (const char* solver : {"banded_qr", "dense_qr"}) {
           const Points ours = ControlPointsOf(*problem, RunSolver(*problem, solver));
