@@ -69,15 +69,17 @@ bool CheckFairingFlags(std::string* error) {
   return true;
 }
 
-bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, std::optional<FairingChoice>* choice,
-                       std::string* error) {
+bool ApplyFairingFlags(const std::string& source, const DataSet& data, FitSpec* spec,
+                       std::optional<FairingChoice>* choice, std::string* error) {
   if (!ApplySpanWeights(spec, error)) return false;
   if (WasGiven("fairing_units")) ApplyUnits(spec);
   if (!WasGiven("fairing")) return true;
   FairingRule rule = FairingRule::kGcv;
   FromString(FLAGS_fairing, &rule);
   if (ChooseFairingWeight(data, rule, FLAGS_noise, spec, &choice->emplace(), error)) return true;
-  *error = "--" + *error;
+  // What no weight could mend is about the fit, not about the flag.
+  const bool is_about_the_rule = error->rfind("fairing=", 0) == 0;
+  *error = (is_about_the_rule ? "--" : source + ": ") + *error;
   return false;
 }
 

@@ -19,9 +19,9 @@ std::vector<FlagInfo> FairingFlags();
 /// Flags that go together; false with one sentence in `error`.
 bool CheckFairingFlags(std::string* error);
 /// Units and weights of the spans into the fairing terms, and the weight that --fairing chooses
-/// from `data`, with how in *choice.
-bool ApplyFairingFlags(const DataSet& data, FitSpec* spec, std::optional<FairingChoice>* choice,
-                       std::string* error);
+/// from `data`, with how in *choice. `source`: what messages about the fit begin with.
+bool ApplyFairingFlags(const std::string& source, const DataSet& data, FitSpec* spec,
+                       std::optional<FairingChoice>* choice, std::string* error);
 
 }  // namespace batten
 

@@ -278,7 +278,7 @@ std::unique_ptr<Problem> LoadFit(const FitRequest& request, std::optional<Fairin
   std::optional<DataSet> data = LoadData(request.entry, error);
   if (!data.has_value()) return nullptr;
   FitSpec spec = request.spec;
-  if (!ApplyFairingFlags(*data, &spec, choice, error)) return nullptr;
+  if (!ApplyFairingFlags(request.source, *data, &spec, choice, error)) return nullptr;
   std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), std::move(spec), error);
   if (problem == nullptr) *error = request.source + ": " + *error;
   return problem;

@@ -216,6 +216,15 @@ TEST(FitCommand, RefusesFairingThatItCannotChoose) {
   refuse({"--fairing=gcv", "--terms=interpolation/loss=huber"},
          {"--fairing=gcv cannot judge a loss"});
   refuse({"--fairing=gcv", "--parameter_kind=free"}, {"--fairing=gcv cannot judge free"});
+  refuse({"--fairing=gcv", "--parameter_kind=projected"}, {"--fairing=gcv cannot judge projected"});
+  refuse({"--fairing=gcv", "--guard=bending"}, {"--fairing=gcv", "the guard bending is another"});
+  refuse({"--fairing=gcv", "--terms=interpolation,curve_fairing"},
+         {"--fairing=gcv cannot judge the term curve_fairing"});
+  refuse({"--fairing=gcv", "--constraints=curvature/t=0.5/kappa=1"},
+         {"--fairing=gcv cannot judge the constraint curvature/t=0.5/kappa=1"});
+  // Not about the rule.
+  refuse({"--fairing=gcv", "--terms=foot_point"}, {": term foot_point needs projected"});
+  refuse({"--fairing=gcv", "--span_weights=1,2"}, {": found 2 weights of spans"});
   refuse({"--terms=fairing/derivative=4"}, {"--terms: ", "derivative", "1 to 3"});
   refuse({"--terms=interpolation,fairing", "--span_weights=1,2"},
          {"found 2 weights of spans", "the curve has 1 spans"});
