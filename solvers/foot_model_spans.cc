@@ -49,11 +49,15 @@ void FootModel::PrepareCurve(const double* control_points) {
   }
   constexpr double kLeast = 1e-3;  // of the mean of |C'|^2 in the middles of the spans
   double sum = 0.0;
+  int count = 0;
   for (int s = 0; s < basis_.num_domain_spans(); ++s) {
+    const auto k = static_cast<std::size_t>(basis_.first_span() + s);
+    if (!(basis_.knots()[k] < basis_.knots()[k + 1])) continue;
+    ++count;
     const double* derivative = &curve_[static_cast<std::size_t>(s) * local_ + dimension_];
     for (int e = 0; e < dimension_; ++e) sum += derivative[e] * derivative[e];
   }
-  least_speed_ = kLeast * sum / basis_.num_domain_spans();
+  least_speed_ = kLeast * sum / count;
 }
 
 /// Counting sort of runs of neighbours in one span; of points in one span the order stays.

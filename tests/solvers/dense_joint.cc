@@ -7,8 +7,30 @@
 #include <limits>
 
 #include "problems/fit_problem.h"
+#include "splines/bspline_curve.h"
 
 namespace batten {
+
+namespace {
+
+double SquaredSpeed(const BsplineCurve& curve, double t) {
+  double derivative[kMaxDimension];
+  curve.Evaluate(t, 1, derivative);
+  return Eigen::Map<const Eigen::VectorXd>(derivative, curve.dimension()).squaredNorm();
+}
+
+/// A thousandth of the mean in the middles of the spans.
+double LeastSquaredSpeed(const BsplineCurve& curve) {
+  const BsplineBasis& basis = curve.basis();
+  double sum = 0.0;
+  for (int s = 0; s < basis.num_domain_spans(); ++s) {
+    const auto k = static_cast<std::size_t>(basis.first_span() + s);
+    sum += SquaredSpeed(curve, 0.5 * (basis.knots()[k] + basis.knots()[k + 1]));
+  }
+  return 1e-3 * sum / basis.num_domain_spans();
+}
+
+}  // namespace
 
 DenseJoint::DenseJoint(const Problem& problem, const Eigen::VectorXd& x) : free_(x.size()) {
   const CurveFit& fit = *problem.curve_fit();
@@ -49,6 +71,12 @@ DenseJoint::DenseJoint(const Problem& problem, const Eigen::VectorXd& x) : free_
     }
   }
   gauss_newton_ = columns.transpose() * columns;
+  const BsplineCurve curve(basis, fit.ControlPoints(objective.Expand(x)));
+  slow_.resize(static_cast<Eigen::Index>(moving_.size()));
+  for (Eigen::Index k = 0; k < slow_.size(); ++k) {
+    const double speed = SquaredSpeed(curve, x[moving_[static_cast<std::size_t>(k)]]);
+    slow_[k] = std::max(1.0, LeastSquaredSpeed(curve) / speed);
+  }
 }
 
 double DenseJoint::Denominator(FootModelKind kind, double damping, Eigen::Index k) const {
@@ -57,11 +85,11 @@ double DenseJoint::Denominator(FootModelKind kind, double damping, Eigen::Index 
     case FootModelKind::kPoint:
       return std::numeric_limits<double>::infinity();
     case FootModelKind::kTangent:
-      return (1.0 + damping) * speed;
+      return speed + damping * slow_[k - points_] * speed;
     case FootModelKind::kCurvature:
       return std::max(speed, newton_(k, k));
     case FootModelKind::kNewton:
-      return newton_(k, k) + damping * speed;
+      return newton_(k, k) + damping * slow_[k - points_] * speed;
   }
   return 0.0;
 }
@@ -82,6 +110,7 @@ Eigen::VectorXd DenseJoint::Step(FootModelKind kind, double damping) const {
   Eigen::MatrixXd h = HalfHessian(kind);
   Eigen::VectorXd added = gauss_newton_.diagonal();
   added.head(points_) = added.head(points_).cwiseMax(1e-3 * added.head(points_).mean());
+  added.tail(slow_.size()).array() *= slow_.array();
   h.diagonal() += damping * added;
   const Eigen::VectorXd solution = h.ldlt().solve(-gradient_);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(free_);

@@ -25,7 +25,7 @@ class DenseJoint {
   Reduced Reduce(FootModelKind kind, double damping) const;
   /// The joint step -(H + D)^-1 g of the same model, control points, then all free parameters (zero
   /// where they stay); D is `damping` times the diagonal of J'J, for control points at least 1e-3
-  /// of its mean.
+  /// of its mean, for parameters at least 1e-3 of the mean of |C'|^2 in the middles of the spans.
   Eigen::VectorXd Step(FootModelKind kind, double damping) const;
   /// What the quadratic model, not damped, says that E falls by.
   double Fall(FootModelKind kind, const Eigen::VectorXd& step) const;
@@ -54,6 +54,7 @@ class DenseJoint {
   Eigen::MatrixXd gauss_newton_;  // J'J
   Eigen::MatrixXd newton_;        // exact
   Eigen::VectorXd gradient_;      // J'r
+  Eigen::VectorXd slow_;          // of moving parameters: what damping takes over |C'|^2, 1 or more
 };
 
 }  // namespace batten
