@@ -67,7 +67,9 @@ TEST(Guards, LeaveNoLoopOfAnOpenCurveEither) { ExpectNoLoops(kRiver); }
 TEST(Guards, AreLightSoThatABadMinimumMayKeepASmallLoop) {
   // As docs/constraints.md says: the dolphin's fins lead some methods to minima with folds.
   for (const char* solver : kSolvers) {
-    EXPECT_EQ(GuardedShape(kDolphin, "length", solver).num_free_loops, 0) << solver;
+    const CurveShape shortened = GuardedShape(kDolphin, "length", solver);
+    EXPECT_LE(shortened.num_free_loops, std::string(solver) == "varpro" ? 2 : 0) << solver;
+    EXPECT_LT(shortened.length, 1.5 * kDolphin.length) << solver;
     const CurveShape bent = GuardedShape(kDolphin, "bending", solver);
     EXPECT_LE(bent.num_free_loops, 2) << solver;
     EXPECT_LT(bent.longest_free_arc, 0.25 * kDolphin.length) << solver;
