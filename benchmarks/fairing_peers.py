@@ -46,11 +46,14 @@ def write_data(folder, t, x, y):
 
 
 def fit(batten, folder, solver, weight):
+    """With the given weight, or with "gcv" by that rule."""
     out = os.path.join(folder, "fit.json")
+    fairing = (["--fairing=gcv"] if weight == "gcv" else
+               [f"--terms=interpolation,fairing/weight={weight!r}"])
     subprocess.run(
         [batten, "fit", os.path.join(folder, "points.csv"), "--parameters=given",
          "--knots=" + os.path.join(folder, "knots.txt"), "--quiet", "--solver=" + solver,
-         f"--terms=interpolation,fairing/weight={weight!r}", "--out=" + out],
+         *fairing, "--out=" + out],
         check=True, stdout=subprocess.DEVNULL)
     with open(out) as file:
         return json.load(file)
@@ -102,6 +105,21 @@ def compare_with_dense(batten, rounds):
     shown("1000 points, banded_cholesky against dense_qr", ratios, "1000")
 
 
+def time_choice(batten, n, rounds):
+    """GCV's choice in the same kind of fit, in times of one solve at the weight that it finds."""
+    t, x, y = make_data(n)
+    ratios = []
+    with tempfile.TemporaryDirectory() as folder:
+        write_data(folder, t, x, y)
+        for _ in range(rounds):
+            choice = fit(batten, folder, "banded_qr", "gcv")["fairing_choice"]
+            solve = fit(batten, folder, "banded_qr", choice["weight"])["seconds"]
+            ratios.append(choice["seconds"] / solve)
+    text = f"{statistics.median(ratios):.1f} solves ({min(ratios):.1f} to {max(ratios):.1f})"
+    print(f"{n} points, choice by GCV from {choice['solves']} weights: {text}, wanted at most 30",
+          flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--batten", default="build/batten")
@@ -111,6 +129,7 @@ def main():
     load = os.getloadavg()[0]
     print(f"load average {load:.1f}" + (": **busy**" if load > math.ceil(0.5) else ""))
     compare_with_dense(arguments.batten, arguments.rounds)
+    time_choice(arguments.batten, 10_000, arguments.rounds)
     for size in map(int, arguments.sizes.split(",")):
         # At the first weight curves keep some hundred bends, at any number of points; normal equations
         # of 1e6 points then have no sure digit, and banded_cholesky hands over to banded_qr. At the

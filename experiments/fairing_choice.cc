@@ -1,6 +1,7 @@
 #include "experiments/fairing_choice.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "experiments/audited_terms.h"
 #include "experiments/fairing_rules.h"
@@ -112,6 +113,7 @@ std::string FairingChoiceWarning(const FairingChoice& choice) {
 
 bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, FitSpec* spec,
                          FairingChoice* choice, std::string* error) {
+  const auto begin = std::chrono::steady_clock::now();
   std::size_t fairing = 0;
   if (!FindFairingTerm(rule, spec, &fairing, error)) return false;
   SetWeight(1.0, &spec->terms[fairing]);
@@ -147,6 +149,7 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   const FairingRuleSetting setting = {problem->units().energy, dimension, systems, noise};
   if (!ChooseByRule(family, rule, setting, choice, error)) return false;
   SetWeight(choice->weight, &spec->terms[fairing]);
+  choice->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return true;
 }
 

@@ -37,6 +37,7 @@ struct FairingChoice {
   /// At which end of the scan the weight lies: -1 the data's, 1 the fair one, 0 at none.
   int end = 0;
   std::vector<FairingSample> samples;  ///< All that were tried, by weight: one solve each.
+  double seconds = 0.0;                ///< Wall time of the choice, the problem's set-up included.
 };
 /// One sentence about a choice at an end of the scan; empty where it is at none.
 std::string FairingChoiceWarning(const FairingChoice& choice);

@@ -98,15 +98,11 @@ Json FairnessJson(const FitReport& report) {
 Json FairingChoiceJson(const FitReport& report) {
   if (!report.fairing_choice.has_value()) return nullptr;
   const FairingChoice& choice = *report.fairing_choice;
-  return {{"rule", ToString(choice.rule)},
-          {"weight", choice.weight},
-          {"score", choice.chosen.score},
-          {"residual", choice.chosen.residual},
-          {"bend", choice.chosen.bend},
-          {"effective_control_points", choice.chosen.trace},
-          {"noise", choice.noise},
-          {"solves", choice.samples.size()},
-          {"warning", FairingChoiceWarning(choice)}};
+  return {{"rule", ToString(choice.rule)}, {"weight", choice.weight},
+          {"score", choice.chosen.score},  {"residual", choice.chosen.residual},
+          {"bend", choice.chosen.bend},    {"effective_control_points", choice.chosen.trace},
+          {"noise", choice.noise},         {"solves", choice.samples.size()},
+          {"seconds", choice.seconds},     {"warning", FairingChoiceWarning(choice)}};
 }
 
 /// Everything of fit.json but the spline and the parameters, which may be long.

@@ -116,7 +116,8 @@ std::string ChoiceLines(const FairingChoice& choice) {
                            ": " + score + Short(choice.chosen.score) + ", " +
                            Short(choice.chosen.trace) + " effective control points, noise " +
                            Short(choice.noise) + "; " +
-                           Plural(static_cast<long>(choice.samples.size()), "solve");
+                           Plural(static_cast<long>(choice.samples.size()), "solve") + " in " +
+                           Short(choice.seconds) + " s";
   const std::string warning = FairingChoiceWarning(choice);
   return Line("fairing", text) + (warning.empty() ? "" : Line("", "warning: " + warning));
 }

@@ -323,6 +323,7 @@ TEST(FitCommand, ChoosesTheFairingWeightAndDrawsHow) {
   EXPECT_NEAR(choice["score"].get<double>(), squared / (freedom * freedom), 1e-9 * squared);
   EXPECT_NEAR(choice["noise"].get<double>(), std::sqrt(squared / freedom), 1e-9);
   EXPECT_GE(choice["solves"].get<int>(), 3);
+  EXPECT_GT(choice["seconds"].get<double>(), 0.0);
   EXPECT_THAT(ended.out, HasSubstr(" by gcv: V "));
   EXPECT_THAT(ended.out, HasSubstr(" effective control points, noise "));
 }
