@@ -93,6 +93,33 @@ Eigen::VectorXd MeansOverRuns(const Eigen::VectorXd& ascent, Eigen::VectorXd d, 
   return d;
 }
 
+/// What body(gather, inward) makes of the points of each place, put where they stand: gather(v) are
+/// their entries of v in their order, a period on the last points before those of the first block;
+/// `inward` is the sign of moves that stay on an open curve, 0 inside.
+template <typename Body>
+Eigen::VectorXd ByPlace(const OrderedParameters& order, const Body& body) {
+  Eigen::VectorXd result(order.t.size());
+  const std::size_t num_blocks = order.block_begins.size() - 1;
+  for (std::size_t b = 0; b < num_blocks; ++b) {
+    const int begin = order.block_begins[b];
+    const auto end =
+        std::min<Eigen::Index>(order.block_begins[b + 1], result.size() - order.num_cut);
+    if (begin >= end) continue;  // the last points of all, which go with the first
+    const int before = b == 0 ? order.num_cut : 0;
+    const auto gather = [&](const Eigen::Ref<const Eigen::VectorXd>& v) {
+      Eigen::VectorXd place(before + end - begin);
+      place << v.tail(before), v.segment(begin, end - begin);
+      return place;
+    };
+    const bool at_end = order.last_at_end && b + 1 == num_blocks;
+    const int inward = order.first_at_end && b == 0 ? 1 : at_end ? -1 : 0;
+    const Eigen::VectorXd place = body(gather, inward);
+    result.tail(before) = place.head(before);
+    result.segment(begin, end - begin) = place.tail(end - begin);
+  }
+  return result;
+}
+
 }  // namespace
 
 OrderedParameters::OrderedParameters(const Eigen::Ref<const Eigen::VectorXd>& s, double period) {
@@ -129,72 +156,28 @@ std::vector<int> OrderedParameters::BlockOf() const {
 }
 
 Eigen::VectorXd OrderedParameters::Apply(const Eigen::Ref<const Eigen::VectorXd>& ds) const {
-  Eigen::VectorXd dt(ds.size());
-  for (std::size_t b = 0; b + 1 < block_begins.size(); ++b) {
-    const int size = block_begins[b + 1] - block_begins[b];
-    dt.segment(block_begins[b], size).setConstant(ds.segment(block_begins[b], size).mean());
-  }
-  if (first_at_end) dt.head(block_begins[1]).setZero();
-  if (last_at_end) dt.tail(dt.size() - block_begins[block_begins.size() - 2]).setZero();
-  if (num_cut == 0) return dt;
-  const int first = block_begins[1];
-  const double mean = (ds.head(first).sum() + ds.tail(num_cut).sum()) / (first + num_cut);
-  dt.head(first).setConstant(mean);
-  dt.tail(num_cut).setConstant(mean);
-  return dt;
+  return ByPlace(*this, [&ds](const auto& gather, int inward) {
+    Eigen::VectorXd place = gather(ds);
+    place.setConstant(inward == 0 ? place.mean() : 0.0);
+    return place;
+  });
 }
 
 Eigen::VectorXd OrderedParameters::KeptTogether(const Eigen::Ref<const Eigen::VectorXd>& ascent,
                                                 const Eigen::Ref<const Eigen::VectorXd>& d) const {
-  Eigen::VectorXd kept = d;
-  const std::size_t num_blocks = block_begins.size() - 1;
-  for (std::size_t b = 0; b < num_blocks; ++b) {
-    const int begin = block_begins[b];
-    const auto end = std::min<Eigen::Index>(block_begins[b + 1], t.size() - num_cut);
-    if (begin >= end) continue;
-    const bool at_end = (first_at_end && b == 0) || (last_at_end && b + 1 == num_blocks);
-    kept.segment(begin, end - begin) =
-        MeansOverRuns(ascent.segment(begin, end - begin), d.segment(begin, end - begin), at_end);
-  }
-  if (num_cut == 0) return kept;
-  const auto first = std::min<Eigen::Index>(block_begins[1], t.size() - num_cut);
-  Eigen::VectorXd ascent_around(num_cut + first), around(num_cut + first);
-  ascent_around << ascent.tail(num_cut), ascent.head(first);
-  around << d.tail(num_cut), d.head(first);
-  around = MeansOverRuns(ascent_around, around, false);
-  kept.tail(num_cut) = around.head(num_cut);
-  kept.head(first) = around.tail(first);
-  return kept;
+  return ByPlace(*this, [&ascent, &d](const auto& gather, int inward) {
+    return MeansOverRuns(gather(ascent), gather(d), inward != 0);
+  });
 }
 
 Eigen::VectorXd OrderedParameters::SteepestAscent(
     const Eigen::Ref<const Eigen::VectorXd>& g) const {
-  const auto regress = [](const Eigen::VectorXd& ascent) {
-    return Eigen::VectorXd(-OrderedParameters(-ascent, 0.0).t);
-  };
-  Eigen::VectorXd ascent(g.size());
-  for (std::size_t b = 0; b + 1 < block_begins.size(); ++b) {
-    const int begin = block_begins[b];
-    const auto end = std::min<Eigen::Index>(block_begins[b + 1], t.size() - num_cut);
-    if (begin < end) ascent.segment(begin, end - begin) = regress(g.segment(begin, end - begin));
-  }
-  if (first_at_end) {
-    auto first = ascent.head(block_begins[1]);
-    first = first.cwiseMin(0.0);
-  }
-  if (last_at_end) {
-    auto last = ascent.tail(ascent.size() - block_begins[block_begins.size() - 2]);
-    last = last.cwiseMax(0.0);
-  }
-  if (num_cut == 0) return ascent;
-  // A period on, the last points and the first block are neighbours at one place, in this order.
-  const auto first = std::min<Eigen::Index>(block_begins[1], t.size() - num_cut);
-  Eigen::VectorXd around(num_cut + first);
-  around << g.tail(num_cut), g.head(first);
-  around = regress(around);
-  ascent.tail(num_cut) = around.head(num_cut);
-  ascent.head(first) = around.tail(first);
-  return ascent;
+  return ByPlace(*this, [&g](const auto& gather, int inward) {
+    Eigen::VectorXd ascent = -OrderedParameters(-gather(g), 0.0).t;
+    if (inward > 0) ascent = ascent.cwiseMin(0.0);
+    if (inward < 0) ascent = ascent.cwiseMax(0.0);
+    return ascent;
+  });
 }
 
 }  // namespace batten
