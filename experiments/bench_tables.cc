@@ -144,7 +144,7 @@ const LatexPart& SolverPart() {
   return part;
 }
 const LatexPart& PairPart() {
-  static const auto& part = *new LatexPart{{"target", "cost"},
+  static const auto& part = *new LatexPart{{"target", "kind", "cost"},
                                            {"first", "second", "instances", "first_less", "equal",
                                             "second_less", "neither", "first_at_2", "second_at_2"}};
   return part;

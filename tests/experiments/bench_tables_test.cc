@@ -396,6 +396,23 @@ TEST(BenchTables, OfRunsLatexShowsThoseOfAnInstanceTogether) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(CountOf(line, " & "), 12) << line;
 }
 
+TEST(BenchTables, OfPairsLatexKeepsKindsOfParametersApart) {
+  HandMadeBench bench({0.1});
+  for (const char* kind : {"fixed", "free"}) {
+    bench.AddInstance(kind, 0.0);
+    bench.AddRun(kind, "cg", {{1, 0.0, 10.0}, {5, 0.1, 0.5}})["parameter_kind"] = kind;
+    bench.AddRun(kind, "gim", {{1, 0.0, 10.0}, {9, 0.1, 0.5}})["parameter_kind"] = kind;
+  }
+  FileBatch batch;
+  std::string error;
+  ASSERT_TRUE(WriteBenchTables(bench.Results(), bench.folder().path(), &batch, &error)) << error;
+  ASSERT_TRUE(batch.Commit(&error)) << error;
+  std::ifstream file(bench.folder().path() / "pairs.tex");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_EQ(CountOf(text, "kind fixed"), 3);  // by evaluations, work units and seconds
+  EXPECT_EQ(CountOf(text, "kind free"), 3);
+}
+
 TEST(BenchTables, FilesHoldAllDigitsAndForPeopleFour) {
   HandMadeBench bench({0.1});
   bench.AddInstance("p", 0.0);
