@@ -254,13 +254,18 @@ TEST(FairingChoice, ByDiscrepancyLeavesTheKnownNoise) {
   EXPECT_THAT(error, HasSubstr("give a smaller noise"));
 }
 
-TEST(FairingChoice, ByTheLCurveLiesBetweenNoiseAndBend) {
-  NoisyCurve curve(8);
+FairingChoice ChosenByTheLCurve(NoisyCurve* curve) {
   FairingChoice choice;
   std::string error;
-  ASSERT_TRUE(
-      ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice, &error))
+  EXPECT_TRUE(
+      ChooseFairingWeight(curve->data, FairingRule::kLCurve, 0.0, &curve->spec, &choice, &error))
       << error;
+  return choice;
+}
+
+TEST(FairingChoice, ByTheLCurveLiesBetweenNoiseAndBend) {
+  NoisyCurve curve(8);
+  const FairingChoice choice = ChosenByTheLCurve(&curve);
   // Half as good as no fairing at all and as a line would be far worse than this.
   EXPECT_LE(curve.Error(choice.weight), 0.9 * curve.Error(1e-14));
   EXPECT_LE(curve.Error(choice.weight), 0.1 * curve.Error(1e6));
@@ -306,11 +311,7 @@ TEST(FairingChoice, ByTheLCurveRefusesAnLWithoutCorner) {
 
 TEST(FairingChoice, ByTheLCurveIsAsSharpAsTheCornerBetweenSamples) {
   NoisyCurve curve(8);
-  FairingChoice choice;
-  std::string error;
-  ASSERT_TRUE(
-      ChooseFairingWeight(curve.data, FairingRule::kLCurve, 0.0, &curve.spec, &choice, &error))
-      << error;
+  const FairingChoice choice = ChosenByTheLCurve(&curve);
   // The figure shows the L and its corner.
   const std::vector<PlotPanel> panels = FairingChoicePanels(choice);
   ASSERT_EQ(panels.size(), 4U);
