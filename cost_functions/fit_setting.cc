@@ -13,11 +13,14 @@ namespace {
 void GroupSorted(const BsplineBasis& basis, Sites* sites) {
   const double* const t = sites->parameters;
   int span = basis.first_span();
+  // A parameter comes from memory in about the time that eight groups take.
+  const std::ptrdiff_t ahead = std::ptrdiff_t(8) * sites->size / basis.num_control_points();
   std::ptrdiff_t length = 0;  // of the last group: the next is mostly about as long
   for (int begin = 0; begin < sites->size;) {
     span = basis.FindSpanFrom(span, t[begin]);
     const double next_knot = basis.knots()[static_cast<std::size_t>(span) + 1];
     // The end of an open domain belongs to the span before it.
+    __builtin_prefetch(t + begin + ahead);
     const bool last = !basis.periodic() && next_knot >= basis.domain_end();
     const auto end =
         last ? sites->size : FirstNotBelow(t, begin, sites->size, next_knot, begin + length);

@@ -7,6 +7,8 @@
 
 namespace batten {
 
+typedef double FourDoubles __attribute__((vector_size(32)));
+
 /// kRowPack doubles that are computed with as one, in vectors of kWidth: the scalar in which affine
 /// residuals are evaluated for several sites at a time. The same bits for any width.
 template <int kWidth>
@@ -33,6 +35,18 @@ struct PackOf {
   /// Entry i from source[i * step].
   static PackOf Gather(const double* source, std::ptrdiff_t step) {
     PackOf pack;
+    if constexpr (kWidth == 4) {
+      // Points in the plane: whole vectors are read and put together again.
+      if (step == 2) {
+        FourDoubles first;
+        FourDoubles second;
+        __builtin_memcpy(&first, source, sizeof first);
+        // Ends with the last entry asked for: what follows it need not be there.
+        __builtin_memcpy(&second, source + 3, sizeof second);
+        pack.lanes[0] = __builtin_shufflevector(first, second, 0, 2, 5, 7);
+        return pack;
+      }
+    }
     for (int l = 0; l < kLanes; ++l) {
       for (int i = 0; i < kLaneSize; ++i) pack.lanes[l][i] = source[(l * kLaneSize + i) * step];
     }

@@ -120,12 +120,16 @@ Points CurveFit::StartOnPolyline() const {
   // Abscissae mostly grow from one control point to the next, by about as much as before.
   std::ptrdiff_t near = 0;
   std::ptrdiff_t last_step = 0;
+  const std::ptrdiff_t ahead = std::ptrdiff_t(8) * m / n;
   const auto first_above = [&](double t) {
     if (sorted[near] > t) near = 0;
     const double above = std::nextafter(t, std::numeric_limits<double>::infinity());
     const std::ptrdiff_t found = FirstNotBelow(sorted.data(), near, m, above, near + last_step);
     last_step = found - near;
     near = std::min<std::ptrdiff_t>(found, m - 1);
+    // What comes a few control points later is probably there.
+    __builtin_prefetch(sorted.data() + near + ahead);
+    __builtin_prefetch(data_.points.data() + (near + ahead) * dimension());
     return static_cast<int>(found);
   };
   const double period = basis_->domain_length();

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "splines/processor.h"
+
 namespace batten {
 namespace {
 
@@ -105,8 +107,11 @@ std::optional<Eigen::VectorXd> Parameterize(Parameterization rule, bool closed,
   return parameters;
 }
 
-bool IsNondecreasing(const double* values, std::ptrdiff_t size) {
-  // Without a way out of the inner loop, so that the compiler compares in packs.
+namespace {
+
+// Without a way out of the inner loop, so that the compiler compares in packs.
+inline __attribute__((always_inline)) bool IsNondecreasingInBlocks(const double* values,
+                                                                   std::ptrdiff_t size) {
   constexpr std::ptrdiff_t kBlock = 256;
   for (std::ptrdiff_t begin = 0; begin + 1 < size; begin += kBlock) {
     const std::ptrdiff_t end = std::min(begin + kBlock, size - 1);
@@ -115,6 +120,22 @@ bool IsNondecreasing(const double* values, std::ptrdiff_t size) {
     if (in_order != end - begin) return false;
   }
   return size != 1 || !std::isnan(values[0]);
+}
+
+#if BATTEN_HAS_AVX2_KERNELS
+__attribute__((target("avx2"))) bool IsNondecreasingWithAvx2(const double* values,
+                                                             std::ptrdiff_t size) {
+  return IsNondecreasingInBlocks(values, size);
+}
+#endif
+
+}  // namespace
+
+bool IsNondecreasing(const double* values, std::ptrdiff_t size) {
+#if BATTEN_HAS_AVX2_KERNELS
+  if (HasAvx2()) return IsNondecreasingWithAvx2(values, size);
+#endif
+  return IsNondecreasingInBlocks(values, size);
 }
 
 std::ptrdiff_t FirstNotBelow(const double* values, std::ptrdiff_t from, std::ptrdiff_t size,
