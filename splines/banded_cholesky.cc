@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "splines/band_sums.h"
 #include "splines/row_pack.h"
 
 namespace batten {
@@ -96,12 +95,6 @@ auto ZeroScratch([[maybe_unused]] int size) {
   }
 }
 
-double OneNorm(const std::vector<double>& x) {
-  double sum = 0.0;
-  for (const double value : x) sum += std::abs(value);
-  return sum;
-}
-
 }  // namespace
 
 bool BandedCholesky::Factor(const NormalBand& matrix) {
@@ -117,8 +110,8 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
   num_swept_ = n_ - dense_size;
   MeasureMatrix(matrix, dense_size);
   FirstPending(matrix.band(), &pending_);
-  factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
-  border_.resize(static_cast<std::size_t>(num_swept_) * num_border_);
+  factor_.resize(static_cast<Eigen::Index>(num_swept_) * width_);
+  border_.resize(static_cast<Eigen::Index>(num_swept_) * num_border_);
   const bool swept = WithFixedShape(
       width_, 1, [&](auto width, auto) { return Sweep<width>(matrix.band(), &pending_); });
   if (!swept) return false;
@@ -127,18 +120,18 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
 }
 
 void BandedCholesky::MeasureMatrix(const NormalBand& matrix, int dense_size) {
+  norm_ = matrix.LargestRowSum();
   if (matrix.cyclic() && num_border_ == 0) {
-    sums_ = matrix.AbsoluteRowSums();
     limits_ = matrix.Diagonal();
+    largest_diagonal_ = 0.0;
+    for (const double entry : limits_) largest_diagonal_ = std::max(largest_diagonal_, entry);
   } else {
-    AbsoluteRowSums(matrix, &sums_);
-    limits_.resize(static_cast<std::size_t>(n_));
-    for (int j = 0; j < n_; ++j) limits_[j] = matrix.band()[static_cast<std::size_t>(j) * width_];
+    const Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>> diagonal(
+        matrix.band().data(), n_, Eigen::InnerStride<>(width_));
+    largest_diagonal_ = n_ > 0 ? std::max(0.0, diagonal.maxCoeff()) : 0.0;
+    const auto last = diagonal.tail(dense_size);
+    limits_.assign(last.begin(), last.end());
   }
-  for (const double sum : sums_) norm_ = std::max(norm_, sum);
-  largest_diagonal_ = 0.0;
-  for (const double entry : limits_) largest_diagonal_ = std::max(largest_diagonal_, entry);
-  limits_.erase(limits_.begin(), limits_.end() - dense_size);
   for (double& limit : limits_) limit *= n_ * kEpsilon;
 }
 
@@ -323,41 +316,40 @@ double BandedCholesky::ConditionEstimate() const {
   // Hager 1984 with Higham's changes of 1988: ||N^-1||_1 is the maximum of the convex function
   // ||N^-1 x||_1 over the unit ball, climbed from corner to corner. Higham's last vector, of
   // alternating signs, is solved for beside the first one: a solve waits for its own results.
-  std::vector<double> pair(2 * static_cast<std::size_t>(n_));
+  Points pair(n_, 2);
   for (int i = 0; i < n_; ++i) {
-    pair[2 * i] = 1.0 / n_;
-    pair[2 * i + 1] =
-        (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + static_cast<double>(i) / std::max(n_ - 1, 1));
+    pair(i, 0) = 1.0 / n_;
+    pair(i, 1) = (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + static_cast<double>(i) / std::max(n_ - 1, 1));
   }
   Solve(pair.data(), 2);
-  std::vector<double> x(n_);
-  double alternating = 0.0;
-  for (int i = 0; i < n_; ++i) {
-    x[i] = pair[2 * i];
-    alternating += std::abs(pair[2 * i + 1]);
-  }
+  const double alternating = pair.col(1).lpNorm<1>();
+  // In the memory of the pair, which is not asked for again.
+  for (int i = 0; i < n_; ++i) pair.data()[i] = pair(i, 0);
+  Eigen::Map<Eigen::VectorXd> x(pair.data(), n_);
   double estimate = 0.0;
   int corner = -1;
-  std::vector<double> sign(n_, 0.0);
+  std::vector<signed char> sign(static_cast<std::size_t>(n_), 0);
   for (int step = 0; step < 5; ++step) {
     if (step > 0) Solve(x.data(), 1);
-    const double norm = OneNorm(x);
+    const double norm = x.lpNorm<1>();
     if (step > 0 && !(norm > estimate)) break;
     estimate = norm;
-    bool changed = false;
+    int changes = 0;
     for (int i = 0; i < n_; ++i) {
-      x[i] = x[i] >= 0.0 ? 1.0 : -1.0;
-      changed = changed || x[i] != sign[i];
-      sign[i] = x[i];
+      const auto now = static_cast<signed char>(x[i] >= 0.0 ? 1 : -1);
+      changes |= now ^ sign[static_cast<std::size_t>(i)];
+      sign[static_cast<std::size_t>(i)] = now;
+      x[i] = now;
     }
-    if (!changed) break;
+    if (changes == 0) break;
     Solve(x.data(), 1);
-    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    const int next = static_cast<int>(std::max_element(x.begin(), x.end(), larger) - x.begin());
-    if (corner >= 0 && std::abs(x[corner]) == std::abs(x[next])) break;
-    corner = next;
+    const double largest = x.lpNorm<Eigen::Infinity>();
+    if (corner >= 0 && std::abs(x[corner]) == largest) break;
+    const auto is_largest = [largest](double value) { return std::abs(value) == largest; };
+    corner = static_cast<int>(std::find_if(x.begin(), x.end(), is_largest) - x.begin());
+    if (corner == n_) break;  // not a number
     // A unit vector on a background that keeps the decaying solution away from denormals.
-    x.assign(n_, 1e-30);
+    x.setConstant(1e-30);
     x[corner] = 1.0;
   }
   estimate = std::max(estimate, 2.0 * alternating / (3.0 * n_));

@@ -55,12 +55,12 @@ class BandedCholesky {
   int num_bordered_ = 0;  // rows with fill in the border
   double norm_ = 0.0;
   double largest_diagonal_ = 0.0;
-  std::vector<double> factor_;  // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
-  std::vector<double> border_;  // as many rows x num_border_: U(j, n - num_border_ + b)
-  std::vector<double> dense_;   // upper triangle, row-major, 1 / D on its diagonal
+  // Not zeroed when they grow.
+  Eigen::VectorXd factor_;     // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
+  Eigen::VectorXd border_;     // as many rows x num_border_: U(j, n - num_border_ + b)
+  std::vector<double> dense_;  // upper triangle, row-major, 1 / D on its diagonal
   // Of Factor alone, kept for the next one.
   Pending pending_;
-  std::vector<double> sums_;
   std::vector<double> limits_;
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <thread>
 
-#include "splines/band_sums.h"
 #include "splines/block_gram.h"
 #include "splines/row_pack.h"
 
@@ -18,16 +17,18 @@ NormalBand::NormalBand(const RowShape& shape)
 void NormalBand::Add(const RowBlock& block, Scratch* scratch) {
   double* const gram = scratch->gram.data();
   scratch->squared_norm_of_data += BlockGram(shape_, block, gram);
-  const int width = shape_.width;
-  const int d = shape_.dimension;
-  for (int j = 0; j < width; ++j) {
-    const int column = WrappedColumn(block.first_column + j);
-    const double* row = gram + j * (width + d);
-    double* target = band_.data() + static_cast<std::size_t>(column) * width;
-    for (int k = j; k < width; ++k) target[k - j] += row[k];
-    double* right = right_hand_side_.data() + static_cast<std::size_t>(column) * d;
-    for (int c = 0; c < d; ++c) right[c] += row[width + c];
-  }
+  WithFixedShape(shape_.width, shape_.dimension, [&](auto fixed_width, auto fixed_dimension) {
+    const int width = fixed_width > 0 ? fixed_width : shape_.width;
+    const int d = fixed_width > 0 ? fixed_dimension : shape_.dimension;
+    for (int j = 0; j < width; ++j) {
+      const int column = WrappedColumn(block.first_column + j);
+      const double* row = gram + j * (width + d);
+      double* target = band_.data() + static_cast<std::size_t>(column) * width;
+      for (int k = j; k < width; ++k) target[k - j] += row[k];
+      double* right = right_hand_side_.data() + static_cast<std::size_t>(column) * d;
+      for (int c = 0; c < d; ++c) right[c] += row[width + c];
+    }
+  });
 }
 
 template <int kWidth, int kDimension, int kRows>
@@ -215,21 +216,39 @@ std::vector<double> NormalBand::Diagonal() const {
   return diagonal;
 }
 
-void AbsoluteRowSums(const NormalBand& matrix, std::vector<double>* sums) {
-  const int n = matrix.size();
-  const int width = matrix.width();
-  sums->assign(static_cast<std::size_t>(n), 0.0);
-  const int inside_end = std::max(n - width + 1, 0);
-  for (int j = 0; j < n; ++j) {
-    const double* entry = matrix.band().data() + static_cast<std::size_t>(j) * width;
-    if (width > 0) (*sums)[j] += std::abs(entry[0]);
-    for (int k = 1; k < width; ++k) {
-      if (j >= inside_end && j + k >= n && !matrix.cyclic()) break;
-      const double size = std::abs(entry[k]);
-      (*sums)[j] += size;
-      (*sums)[j + k < n ? j + k : j + k - n] += size;
+double NormalBand::AbsoluteRowSum(int j) const {
+  const int n = shape_.num_columns;
+  double sum = 0.0;
+  for (int k = shape_.width - 1; k > 0; --k) {
+    const int before = j >= k ? j - k : j - k + n;
+    if (j >= k || shape_.cyclic) {
+      sum += std::abs(band_[static_cast<std::size_t>(before) * shape_.width + k]);
     }
   }
+  for (int k = 0; k < shape_.width && (shape_.cyclic || j + k < n); ++k) {
+    sum += std::abs(band_[static_cast<std::size_t>(j) * shape_.width + k]);
+  }
+  return sum;
+}
+
+template <typename Visitor>
+void NormalBand::VisitAbsoluteRowSums(const Visitor& visit) const {
+  const int n = shape_.num_columns;
+  const int reach = std::max(shape_.width - 1, 0);
+  const int inside_begin = std::min(reach, n);
+  const int inside_end = std::max(inside_begin, n - reach);
+  for (int j = 0; j < inside_begin; ++j) visit(j, AbsoluteRowSum(j));
+  WithFixedShape(shape_.width, 1, [&](auto fixed_width, auto) {
+    const int width = fixed_width > 0 ? fixed_width : shape_.width;
+    for (int j = inside_begin; j < inside_end; ++j) {
+      const double* const entry = band_.data() + static_cast<std::size_t>(j) * width;
+      double sum = 0.0;
+      for (int k = width - 1; k > 0; --k) sum += std::abs(entry[k - k * width]);
+      for (int k = 0; k < width; ++k) sum += std::abs(entry[k]);
+      visit(j, sum);
+    }
+  });
+  for (int j = inside_end; j < n; ++j) visit(j, AbsoluteRowSum(j));
 }
 
 std::vector<double> NormalBand::AbsoluteRowSums() const {
@@ -239,9 +258,19 @@ std::vector<double> NormalBand::AbsoluteRowSums() const {
     const Eigen::VectorXd dense = ToDense().cwiseAbs().rowwise().sum();
     std::copy_n(dense.data(), sums.size(), sums.begin());
   } else {
-    batten::AbsoluteRowSums(*this, &sums);
+    VisitAbsoluteRowSums([&](int j, double sum) { sums[static_cast<std::size_t>(j)] = sum; });
   }
   return sums;
+}
+
+double NormalBand::LargestRowSum() const {
+  double largest = 0.0;
+  if (Overlaps()) {
+    for (const double sum : AbsoluteRowSums()) largest = std::max(largest, sum);
+  } else {
+    VisitAbsoluteRowSums([&](int, double sum) { largest = std::max(largest, sum); });
+  }
+  return largest;
 }
 
 Eigen::MatrixXd NormalBand::ToDense() const {

@@ -39,6 +39,8 @@ class NormalBand : public RowConsumer {
   std::vector<double> Diagonal() const;
   /// Row sums of |N|: by Gershgorin and for a diagonal step rule.
   std::vector<double> AbsoluteRowSums() const;
+  /// The largest of them: ||N|| in the norms of rows and of columns.
+  double LargestRowSum() const;
   Eigen::MatrixXd ToDense() const;
 
  private:
@@ -61,6 +63,11 @@ class NormalBand : public RowConsumer {
   int WrappedColumn(int column) const {
     return column < shape_.num_columns ? column : column % shape_.num_columns;
   }
+  /// Of row j, any j, unless the band overlaps.
+  double AbsoluteRowSum(int j) const;
+  /// visit(row, sum) for each row, unless the band overlaps.
+  template <typename Visitor>
+  void VisitAbsoluteRowSums(const Visitor& visit) const;
   /// Row j of the product, any j.
   void MultiplyRow(int j, const double* v, double* product) const;
   /// Rows whose entries do not leave 0..n-1.

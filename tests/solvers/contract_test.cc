@@ -118,9 +118,9 @@ void ExpectMinimized(const Problem& problem, const SolverTrial& trial) {
       break;
     case StopReason::kGradientSmall:
     case StopReason::kRoundingFloor: {
-      // gap = g'N^-1 g / 4, and the start's is at least |g|^2 / (4 l1).
+      // gap = ||A (P - P*)||^2 = g'N^-1 g / 4, and what rounding moves of A P adds to the root.
       const double norm = trial.context.gradient_norms().back();
-      EXPECT_LE(gap, 0.25 * std::pow(norm / dense.smallest, 2) * (1.0 + 1e-6) + rounding);
+      EXPECT_LE(std::sqrt(gap), 0.5 * norm / dense.smallest + std::sqrt(rounding));
       break;
     }
     case StopReason::kNativeStop:

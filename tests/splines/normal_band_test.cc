@@ -22,6 +22,7 @@ TEST(NormalBand, IsTheDenseNormalMatrix) {
       EXPECT_EQ(band.Diagonal()[j], dense(j, j));
       EXPECT_EQ(band.AbsoluteRowSums()[j], dense.row(j).cwiseAbs().sum());
     }
+    EXPECT_EQ(band.LargestRowSum(), dense.cwiseAbs().rowwise().sum().maxCoeff());
   }
 }
 
