@@ -83,7 +83,8 @@ def repeated(smoothing, solver, n, weight):
     """Seconds of a solve by the benchmark program, which repeats it."""
     name = f"Smooth/{solver}/{n}/{shown_weight(weight)}/manual_time"
     with tempfile.NamedTemporaryFile(suffix=".json") as out:
-        subprocess.run([smoothing, f"--benchmark_filter=^{name}$", f"--benchmark_out={out.name}"],
+        subprocess.run([smoothing, f"--benchmark_filter=^{name}$", f"--benchmark_out={out.name}",
+                        "--benchmark_min_time=2"],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         (entry,) = json.load(out)["benchmarks"]
     if entry.get("error_occurred"):

@@ -74,12 +74,18 @@ class FunctorRows {
     }
     // Right-hand sides behind the coefficients: consumers have their fastest loops for that.
     alignas(32) double rows[(kOrderStorage + kDimensionStorage) * kMaxRowsPerBlock];
+    int lanes_in_use = kRowPack;
     for (int g = first_group; g < end_group; ++g) {
       const Sites::Group& group = sites_.groups[static_cast<std::size_t>(g)];
-      if (group.end - group.begin < kRowPack) {
+      const int size = group.end - group.begin;
+      if (size < kRowPack) {
+        // Lanes without a row are zero: they stay so while no block has fewer rows than the last.
+        if (size < lanes_in_use) std::fill_n(rows, (order() + dimension()) * kRowPack, 0.0);
+        lanes_in_use = size;
         consumer->Consume(FillFew(group, root_factor, few_points, rows));
         continue;
       }
+      lanes_in_use = kRowPack;
       const SpanBasis<P, PackType> span_basis(basis_.degree(), basis_.knots().data(), group.span);
       for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
         RowBlock block;
@@ -97,6 +103,7 @@ class FunctorRows {
 
   /// The block of a span with fewer sites than a pack has, one after the other in plain numbers: a
   /// smoothing spline has one or two in each of its spans, for which packs cost twice as much.
+  /// Lanes of `rows` without a row must be zero.
   __attribute__((flatten)) RowBlock FillFew(const Sites::Group& group, double root_factor,
                                             const PlainForm* const* points, double* rows) const {
     RowBlock block;
@@ -105,7 +112,6 @@ class FunctorRows {
     block.stride = kRowPack;
     block.coefficients = rows;
     block.right_hand_sides = rows + order() * kRowPack;
-    std::fill_n(rows, (order() + dimension()) * kRowPack, 0.0);
     Site<double, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
     site.set_variables(points);
     for (int i = 0; i < block.num_rows; ++i) {

@@ -317,9 +317,11 @@ double BandedCholesky::ConditionEstimate() const {
   // ||N^-1 x||_1 over the unit ball, climbed from corner to corner. Higham's last vector, of
   // alternating signs, is solved for beside the first one: a solve waits for its own results.
   Points pair(n_, 2);
+  const double share = 1.0 / n_;
+  const double slope = 1.0 / std::max(n_ - 1, 1);
   for (int i = 0; i < n_; ++i) {
-    pair(i, 0) = 1.0 / n_;
-    pair(i, 1) = (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + static_cast<double>(i) / std::max(n_ - 1, 1));
+    pair(i, 0) = share;
+    pair(i, 1) = (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + slope * i);
   }
   Solve(pair.data(), 2);
   const double alternating = pair.col(1).lpNorm<1>();

@@ -33,8 +33,7 @@ void NormalBand::Add(const RowBlock& block, Scratch* scratch) {
 
 template <int kWidth, int kDimension, int kRows>
 void NormalBand::AddFew(const RowBlock& block, Scratch* scratch) {
-  // Zeros behind each row: the band's rows are then all updated at full width.
-  double row[kRows][2 * kWidth] = {};
+  double row[kRows][kWidth];
   double data[kRows][kDimension];
   for (int i = 0; i < kRows; ++i) {
     for (int j = 0; j < kWidth; ++j) row[i][j] = block.coefficients[j * kRowPack + i];
@@ -46,7 +45,7 @@ void NormalBand::AddFew(const RowBlock& block, Scratch* scratch) {
   for (int j = 0; j < kWidth; ++j) {
     const auto column = static_cast<std::size_t>(WrappedColumn(block.first_column + j));
     double* const target = band_.data() + column * kWidth;
-    for (int k = 0; k < kWidth; ++k) {
+    for (int k = 0; k + j < kWidth; ++k) {
       double sum = row[0][j] * row[0][j + k];
       for (int i = 1; i < kRows; ++i) sum += row[i][j] * row[i][j + k];
       target[k] += sum;
@@ -119,7 +118,7 @@ bool NormalBand::Overlaps() const {
   return shape_.cyclic && shape_.num_columns < 2 * shape_.width - 1;
 }
 
-void NormalBand::MultiplyRow(int j, const double* v, double* product) const {
+void NormalBand::MultiplyRow(int j, const double* v, const double* right, double* product) const {
   const int d = shape_.dimension;
   const int n = shape_.num_columns;
   double* target = product + static_cast<std::size_t>(j) * d;
@@ -138,10 +137,13 @@ void NormalBand::MultiplyRow(int j, const double* v, double* product) const {
     if (j + k >= n && !shape_.cyclic) break;
     add(j, k, WrappedColumn(j + k));
   }
+  const std::size_t place = static_cast<std::size_t>(j) * d;
+  for (int c = 0; right != nullptr && c < d; ++c) target[c] = right[place + c] - target[c];
 }
 
 template <int kWidth, int kDimension>
-void NormalBand::MultiplyInside(int begin, int end, const double* v, double* product) const {
+void NormalBand::MultiplyInside(int begin, int end, const double* v, const double* right,
+                                double* product) const {
   if constexpr (kWidth < 0) {
     const int width = shape_.width;
     const int d = shape_.dimension;
@@ -152,7 +154,8 @@ void NormalBand::MultiplyInside(int begin, int end, const double* v, double* pro
         double sum = 0.0;
         for (int k = width - 1; k > 0; --k) sum += entry[k - k * width] * near[c - k * d];
         for (int k = 0; k < width; ++k) sum += entry[k] * near[k * d + c];
-        product[static_cast<std::size_t>(j) * d + c] = sum;
+        const std::size_t place = static_cast<std::size_t>(j) * d + c;
+        product[place] = right == nullptr ? sum : right[place] - sum;
       }
     }
   } else {
@@ -168,28 +171,32 @@ void NormalBand::MultiplyInside(int begin, int end, const double* v, double* pro
       for (int k = 0; k < kWidth; ++k) {
         for (int c = 0; c < kDimension; ++c) sum[c] += entry[k] * near[k * kDimension + c];
       }
-      double* const target = product + static_cast<std::size_t>(j) * kDimension;
-      for (int c = 0; c < kDimension; ++c) target[c] = sum[c];
+      const std::size_t place = static_cast<std::size_t>(j) * kDimension;
+      for (int c = 0; c < kDimension; ++c) {
+        product[place + c] = right == nullptr ? sum[c] : right[place + c] - sum[c];
+      }
     }
   }
 }
 
-void NormalBand::Multiply(const double* v, double* product) const {
+void NormalBand::MultiplyAll(const double* v, const double* right, double* product) const {
   const int n = shape_.num_columns;
   const int reach = std::max(shape_.width - 1, 0);
   const int inside_begin = std::min(reach, n);
   const int inside_end = std::max(inside_begin, n - reach);
-  for (int j = 0; j < inside_begin; ++j) MultiplyRow(j, v, product);
+  for (int j = 0; j < inside_begin; ++j) MultiplyRow(j, v, right, product);
   WithFixedShape(shape_.width, shape_.dimension, [&](auto width, auto dimension) {
-    MultiplyInside<width, dimension>(inside_begin, inside_end, v, product);
+    MultiplyInside<width, dimension>(inside_begin, inside_end, v, right, product);
   });
-  for (int j = inside_end; j < n; ++j) MultiplyRow(j, v, product);
+  for (int j = inside_end; j < n; ++j) MultiplyRow(j, v, right, product);
+}
+
+void NormalBand::Multiply(const double* v, double* product) const {
+  MultiplyAll(v, nullptr, product);
 }
 
 void NormalBand::NormalResidual(const double* control_points, double* residual) const {
-  Multiply(control_points, residual);
-  const double* right = right_hand_side_.data();
-  for (Eigen::Index k = 0; k < right_hand_side_.size(); ++k) residual[k] = right[k] - residual[k];
+  MultiplyAll(control_points, right_hand_side_.data(), residual);
 }
 
 template <typename Visitor>

@@ -68,11 +68,13 @@ class NormalBand : public RowConsumer {
   /// visit(row, sum) for each row, unless the band overlaps.
   template <typename Visitor>
   void VisitAbsoluteRowSums(const Visitor& visit) const;
-  /// Row j of the product, any j.
-  void MultiplyRow(int j, const double* v, double* product) const;
+  /// product = N V, or `right` - N V unless that is null; of row j, any j; of all rows.
+  void MultiplyRow(int j, const double* v, const double* right, double* product) const;
+  void MultiplyAll(const double* v, const double* right, double* product) const;
   /// Rows whose entries do not leave 0..n-1.
   template <int kWidth, int kDimension>
-  void MultiplyInside(int begin, int end, const double* v, double* product) const;
+  void MultiplyInside(int begin, int end, const double* v, const double* right,
+                      double* product) const;
   /// visit(row, k, column, entry) for every entry of the band that stands for one of N.
   template <typename Visitor>
   void VisitUpperEntries(const Visitor& visit) const;
