@@ -2,7 +2,7 @@
 """Times the fairing fits of build/batten beside SciPy's make_smoothing_spline and the dense method.
 
     python3 benchmarks/fairing_peers.py [--batten=build/batten] [--rounds=3] [--sizes=10000,1000000]
-        [--smoothing=build/benchmarks/smoothing_benchmark]
+        [--smoothing=build-bench/benchmarks/smoothing_benchmark]
 
 Processor seconds of the solvers alone, one after the other in each round; a ratio is formed within
 its round, and the median of the rounds is shown with the lowest and the highest. Both sides solve
@@ -151,7 +151,7 @@ def time_choice(batten, n, rounds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--batten", default="build/batten")
-    parser.add_argument("--smoothing", default="build/benchmarks/smoothing_benchmark")
+    parser.add_argument("--smoothing", default="build-bench/benchmarks/smoothing_benchmark")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--sizes", default="10000,1000000")
     arguments = parser.parse_args()
