@@ -198,19 +198,40 @@ PairedTimes Pair(const std::vector<std::unique_ptr<Problem>>& problems,
   return paired;
 }
 
-void PrintRow(const std::string& solver, const std::vector<Arrival>& arrivals,
-              const std::vector<PairedTimes>& paired) {
+double MedianSeconds(const std::vector<Arrival>& arrivals) {
+  std::vector<double> seconds;
+  for (const Arrival& arrival : arrivals) seconds.push_back(arrival.seconds);
+  return Median(seconds);
+}
+
+/// `value`, or that it is above `most` where more than half of the runs do not arrive.
+std::string Shown(double value, double most) {
+  char text[32];
+  const bool is_finite = std::isfinite(value);
+  std::snprintf(text, sizeof text, is_finite ? "%.3g" : "over %.3g", is_finite ? value : most);
+  return text;
+}
+
+/// `best`: median seconds of the method that the others are held against.
+void PrintRow(const std::string& solver, const std::vector<Arrival>& arrivals, double best,
+              double most_seconds, const std::vector<PairedTimes>& paired) {
   int reached = 0;
   double log_energy = 0.0;
   for (const Arrival& arrival : arrivals) {
     reached += std::isfinite(arrival.seconds) ? 1 : 0;
     log_energy += std::log(arrival.basin.energy_at_foot_points);
   }
-  std::vector<double> seconds;
-  for (const Arrival& arrival : arrivals) seconds.push_back(arrival.seconds);
-  std::printf("| `%s` | %d of %zu | %.3g |", solver.c_str(), reached, arrivals.size(),
-              1e3 * Median(seconds));
-  for (const PairedTimes& times : paired) std::printf(" %d | %.3g |", times.pairs, times.ratio);
+  const double median = MedianSeconds(arrivals);
+  std::printf("| `%s` | %d of %zu | %s | %s |", solver.c_str(), reached, arrivals.size(),
+              Shown(1e3 * median, 1e3 * most_seconds).c_str(),
+              Shown(median / best, most_seconds / best).c_str());
+  for (const PairedTimes& times : paired) {
+    if (times.pairs == 0) {
+      std::printf(" 0 | - |");
+    } else {
+      std::printf(" %d | %.3g |", times.pairs, times.ratio);
+    }
+  }
   std::printf(" %.4g |\n", std::exp(log_energy / static_cast<double>(arrivals.size())));
 }
 
@@ -228,9 +249,11 @@ void Race(int starts, double most_seconds) {
   for (const std::string& outline : Outlines()) problems.push_back(OutlineFit(outline));
   std::printf(
       "%zu outlines of at most 200 points.\n\n"
-      "| method | reached | median ms | pairs with `%s` | times its time | pairs with `%s` | times "
-      "its time | geometric mean of E at feet |\n|---|---|---|---|---|---|---|---|\n",
-      problems.size(), ours[0].c_str(), ours[1].c_str());
+      "| method | reached | median ms | over that of `%s` | pairs with `%s` | times its time | "
+      "pairs "
+      "with `%s` | times its time | geometric mean of E at feet |\n"
+      "|---|---|---|---|---|---|---|---|---|\n",
+      problems.size(), ours[0].c_str(), ours[0].c_str(), ours[1].c_str());
   std::map<std::string, std::vector<Arrival>> arrivals;
   for (const std::string& solver : solvers) {
     std::fprintf(stderr, "%s\n", solver.c_str());
@@ -248,7 +271,7 @@ void Race(int starts, double most_seconds) {
     for (const std::string& one : ours) {
       paired.push_back(Pair(problems, arrivals[solver], arrivals[one]));
     }
-    PrintRow(solver, arrivals[solver], paired);
+    PrintRow(solver, arrivals[solver], MedianSeconds(arrivals[ours[0]]), most_seconds, paired);
   }
 }
 
