@@ -11,6 +11,7 @@
 #include "experiments/max_distance_fit.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
+#include "solvers/solver_registry.h"
 #include "tools/command.h"
 #include "tools/fairing_flags.h"
 #include "tools/fit_request.h"
@@ -159,11 +160,32 @@ bool WriteFiles(const Problem& problem, const RunResult& run, const RunSpec& spe
          batch.Commit(error);
 }
 
+/// Iterates stay in memory until the run has ended. False with one sentence for more of them than
+/// that is good for; a direct solver has but its start and its end.
+bool CheckIteratesFit(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
+                      std::string* error) {
+  constexpr double kMostGibibytes = 4.0;
+  const SolverInfo* const info = SolverRegistry::Global().Find(solver.name);
+  if (!spec.keep_iterates || (info != nullptr && info->native_rule == NativeRule::kDirect)) {
+    return true;
+  }
+  const double gibibytes =
+      std::ldexp(sizeof(double) * (1.0 + spec.max_iterations) * problem.num_variables(), -30);
+  if (gibibytes <= kMostGibibytes) return true;
+  *error = "--iterates: those of " + std::to_string(spec.max_iterations) + " iterations with " +
+           std::to_string(problem.num_variables()) + " variables would take " +
+           ShortNumber(gibibytes, 3) + " GiB of memory; allowed: at most " +
+           ShortNumber(kMostGibibytes, 3) + "; use a lower --max_iterations";
+  return false;
+}
+
 int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec& spec,
                 CommandOutput* output) {
   std::optional<FairingChoice> choice;
   const std::unique_ptr<Problem> problem = LoadFit(request, &choice, &output->error);
-  if (problem == nullptr) return kBadInput;
+  if (problem == nullptr || !CheckIteratesFit(*problem, solver, spec, &output->error)) {
+    return kBadInput;
+  }
   RunResult run;
   if (!RunWithProgress(*problem, solver, spec, &run, &output->error)) return kBadInput;
   if (InterruptRequested()) {

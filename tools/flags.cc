@@ -130,7 +130,8 @@ std::string DefaultText(const FlagInfo& flag) {
   // A number outside its own range stands for "not given".
   double number = 0.0;
   if (IsNumber(flag) && ParseNumber(defined.default_value, &number) &&
-      (number < flag.lowest || number > flag.highest)) {
+      (number < flag.lowest || number > flag.highest ||
+       (flag.above_lowest && number == flag.lowest))) {
     return "";
   }
   return "default: " + (IsNumber(flag) ? LimitText(flag, number) : defined.default_value);

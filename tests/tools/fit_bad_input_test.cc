@@ -182,6 +182,21 @@ TEST(FitCommand, GivesUpAFileOfKnotsWithoutAnEnd) {
       {"/dev/zero:1: found ", "allowed: numbers"});
 }
 
+TEST(FitCommand, RefusesMoreIteratesThanMemoryIsGoodFor) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "iterates.jsonl";
+  const auto fit = [&](const std::string& solver) {
+    return RunBatten({"fit", "--problem=rhino", "--control_points=3000", "--solver=" + solver,
+                      "--max_iterations=1000000", "--iterates=" + file});
+  };
+  // 8 bytes x 1,000,001 x 6,000 = 44.7 GiB.
+  ExpectRefused(fit("lspia"), {"--iterates: ", "44.7 GiB", "at most 4", "--max_iterations"});
+  EXPECT_THAT(folder.Names(), ::testing::IsEmpty());
+  // It has two.
+  EXPECT_EQ(fit("banded_qr").status, 0);
+  EXPECT_THAT(folder.Names(), ::testing::ElementsAre("iterates.jsonl"));
+}
+
 TEST(FitCommand, WantsExactlyOneInput) {
   ExpectRefused(RunBatten({"fit", "--control_points=4"}), {"found 0 files", "one FILE"});
   ExpectRefused(RunBatten({"fit", "a.csv", "b.csv"}), {"found 2 files"});
