@@ -51,6 +51,18 @@ class Watched final : public EvaluationMonitor {
   const EvaluationWatch& watch_;
 };
 
+/// Distance of the farthest control point from the data's middle, in sizes of the data.
+double Reach(const CurveFit& fit, const Eigen::VectorXd& x) {
+  const Points control_points = fit.ControlPoints(x);
+  const Eigen::Map<const Eigen::RowVectorXd> center(fit.setting().center, fit.dimension());
+  return (control_points.rowwise() - center).rowwise().norm().maxCoeff() / fit.size();
+}
+
+/// In sizes of the data: a curve that goes there does so for no point, and where E has lost half of
+/// its digits.
+constexpr double kFar = 100.0;
+constexpr double kHidden = 1e4;
+
 /// What a user of moving parameters has to know to read the end of a run.
 void AddWarnings(const Problem& problem, RunResult* result) {
   const CurveFit* fit = problem.curve_fit();
@@ -65,16 +77,19 @@ void AddWarnings(const Problem& problem, RunResult* result) {
     result->notes.emplace_back(
         "degree 2", "second derivatives jump at knots, so that convergence may be slow there");
   }
-  // Inside, data have a size of about 1.
-  constexpr double kFar = 1e4;
-  const Points control_points = fit->ControlPoints(result->x);
-  const Eigen::Map<const Eigen::RowVectorXd> center(fit->setting().center, fit->dimension());
-  const double reach =
-      (control_points.rowwise() - center).rowwise().norm().maxCoeff() / fit->size();
+  const double reach = Reach(*fit, result->x);
   if (reach > kFar) {
     result->notes.emplace_back("far from the data",
                                "control points are up to " + ShortNumber(reach, 2) +
-                                   " times the data's size away, where rounding hides much of E");
+                                   " times the data's size away" +
+                                   (reach > kHidden ? ", where rounding hides much of E" : ""));
+  }
+  const double start_reach = Reach(*fit, problem.start());
+  if (start_reach > kFar && result->outcome.reason == StopReason::kGradientSmall) {
+    result->notes.emplace_back(
+        "far start", "|g| is small beside that of the start, " + ShortNumber(start_reach, 2) +
+                         " times the data's size away; a lower --gradient_tolerance or a "
+                         "nearer start goes on");
   }
 }
 

@@ -122,14 +122,20 @@ void RunControl::Note(const std::string& name, const std::string& value) {
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
-Status RunControl::Iterate(const Eigen::VectorXd& x) {
+Status RunControl::Iterate(const Eigen::VectorXd& x) { return BookAndCheck(x, true); }
+
+Status RunControl::IterateOnTheWay(const Eigen::VectorXd& x) { return BookAndCheck(x, false); }
+
+Status RunControl::BookAndCheck(const Eigen::VectorXd& x, bool may_be_the_end) {
   watch_.Pause();
   if (stop_reason_ != StopReason::kNotRun) ++result_->calls_past_stop;
   ++iteration_;
   AddToStream(HashPoint(x));
   Book(x);
   if (stop_reason_ == StopReason::kNotRun) stop_reason_ = CheckStop(row_);
-  if (stop_reason_ == StopReason::kNotRun) stop_reason_ = CheckConverged(row_, x);
+  if (stop_reason_ == StopReason::kNotRun) {
+    stop_reason_ = may_be_the_end ? CheckConverged(row_, x) : CheckLimit();
+  }
   watch_.Resume();
   return stop_reason_ == StopReason::kNotRun ? Status::kOk : Status::kStop;
 }

@@ -43,6 +43,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
 
   bool Allow(Evaluation kind, const Eigen::VectorXd* x) override;
   Status Iterate(const Eigen::VectorXd& x) override;
+  Status IterateOnTheWay(const Eigen::VectorXd& x) override;
   StopReason stop_reason() const override { return stop_reason_; }
   void Note(const std::string& name, const std::string& value) override;
   void OffTheClock(const std::function<void()>& work) override;
@@ -50,6 +51,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   int threads() const override { return spec_.threads; }
 
  private:
+  Status BookAndCheck(const Eigen::VectorXd& x, bool may_be_the_end);
   void Book(const Eigen::VectorXd& x);
   void KeepIterate(const Eigen::VectorXd& x);
   StopReason CheckStop(const TraceRow& row);

@@ -150,7 +150,7 @@ Outcome BestOfSolver::DoMinimize(Objective* objective, RunContext* context, Eige
     lowest = energy;
     best = k;
     *x = end;
-    if (context->Iterate(*x) != Status::kOk) return {context->stop_reason(), ""};
+    if (context->IterateOnTheWay(*x) != Status::kOk) return {context->stop_reason(), ""};
   }
   context->Note("best start", std::to_string(best) + " of 0 to " + std::to_string(starts_ - 1));
   return base_->Minimize(objective, context, x);

@@ -40,7 +40,11 @@ class RunContext {
   /// Books iteration 0 (the start, set-up done), then one after each iteration. Anything but kOk:
   /// return at once, with stop_reason().
   virtual Status Iterate(const Eigen::VectorXd& x) = 0;
-  /// Why Iterate or an evaluation said kStop.
+  /// As Iterate, of a point that the solver goes on from whatever |g| is there, such as the best
+  /// end so far of several starts: limits end the run, the rule that says it has converged does
+  /// not.
+  virtual Status IterateOnTheWay(const Eigen::VectorXd& x) { return Iterate(x); }
+  /// Why Iterate, IterateOnTheWay or an evaluation said kStop.
   virtual StopReason stop_reason() const = 0;
   /// Something about the run that belongs beside its result: "spectral radius of I - A", "0.667".
   virtual void Note(const std::string& name, const std::string& value) = 0;

@@ -191,9 +191,13 @@ std::string NotReachedMessage(const RunResult& run, const RunSpec& spec) {
                      " did not reach what was asked: " + ToString(run.outcome.reason) + " after " +
                      Plural(run.iterations, "iteration") + " at |g| = " + Short(run.gradient_norm);
   if (spec.mode == Mode::kRace) {
-    const double asked = spec.gradient_tolerance * run.start_gradient_norm;
-    text +=
-        "; asked: at most " + Short(std::max({asked, run.gradient_floor, run.line_search_floor}));
+    const double asked =
+        std::max(spec.gradient_tolerance * run.start_gradient_norm, run.line_search_floor);
+    // At ends far from the data all of |g| may be rounding, which is no reason to be content.
+    text += run.gradient_norm > run.gradient_floor
+                ? "; asked: at most " + Short(std::max(asked, run.gradient_floor))
+                : "; asked: at most " + Short(asked) + ", where rounding alone makes up to " +
+                      Short(run.gradient_floor);
   }
   return text;
 }

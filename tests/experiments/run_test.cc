@@ -285,5 +285,40 @@ TEST(Run, KnowsWhereALineSearchHasToEnd) {
   EXPECT_EQ(RunSolver(*LoadCatalogueProblem("rhino"), "lbfgs").line_search_floor, 0.0);
 }
 
+TEST(Run, BestOfTriesAllItsStartsHoweverSoonTheRunWouldBeContent) {
+  const auto problem = LoadCatalogueProblem("rhino_free");
+  RunSpec loose;
+  loose.gradient_tolerance = 1e-4;
+  RunSpec native;
+  native.mode = Mode::kNative;
+  for (const RunSpec& spec : {loose, native}) {
+    const RunResult once = RunSolver(*problem, "foot_newton", spec);
+    const RunResult best = RunSolver(*problem, "best_of/starts=6:foot_newton", spec);
+    EXPECT_THAT(NoteNames(best), Contains("best start"));
+    EXPECT_EQ(best.outcome.reason, StopReason::kGradientSmall);
+    EXPECT_LT(best.energy, 0.8 * once.energy);
+  }
+  RunSpec limited;
+  limited.max_iterations = 1;
+  EXPECT_EQ(RunSolver(*problem, "best_of/starts=6:foot_newton", limited).outcome.reason,
+            StopReason::kIterationLimit);
+}
+
+TEST(Run, SaysThatAFarStartMakesEveryGradientLookSmall) {
+  FitSpec spec = LoadCatalogueProblem("rhino_free")->curve_fit()->spec();
+  DataSet data = LoadCatalogueProblem("rhino_free")->curve_fit()->data();
+  spec.start_points.resize(spec.control_points, 2);
+  for (int j = 0; j < spec.control_points; ++j) {
+    const double angle = 2.0 * M_PI * j / spec.control_points;
+    spec.start_points.row(j) << 1e6 + 100.0 * std::cos(angle), 100.0 * std::sin(angle);
+  }
+  std::string error;
+  const auto problem = MakeFitProblem(std::move(data), std::move(spec), &error);
+  ASSERT_NE(problem, nullptr) << error;
+  const RunResult result = RunSolver(*problem, "foot_newton", RunSpec());
+  ASSERT_EQ(result.outcome.reason, StopReason::kGradientSmall);
+  EXPECT_THAT(NoteNames(result), Contains("far start"));
+}
+
 }  // namespace
 }  // namespace batten
