@@ -25,6 +25,10 @@ import numpy
 from scipy.interpolate import BSpline, make_smoothing_spline
 
 
+# Those of smoothing_benchmark.cc.
+SIZES = ("10000", "1000000")
+
+
 def make_data(n):
     """Places in [0, 1] and two noisy waves, from a linear congruence."""
     state = 12345
@@ -104,9 +108,8 @@ def compare_with_scipy(arguments, n, weight):
     firsts = {solver: [] for solver in wanted}
     with tempfile.TemporaryDirectory() as folder:
         write_data(folder, t, x, y)
-        for number in range(arguments.rounds):
-            if number == 0:
-                make_smoothing_spline(t, x, lam=weight)
+        make_smoothing_spline(t, x, lam=weight)
+        for _ in range(arguments.rounds):
             begin = time.process_time()
             theirs = [make_smoothing_spline(t, values, lam=weight) for values in (x, y)]
             seconds = time.process_time() - begin
@@ -155,11 +158,17 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--sizes", default="10000,1000000")
     arguments = parser.parse_args()
+    sizes = arguments.sizes.split(",")
+    if not set(sizes) <= set(SIZES):
+        parser.error(f"--sizes: found {arguments.sizes}; allowed: {', '.join(SIZES)}")
+    for program in (arguments.batten, arguments.smoothing):
+        if not os.path.isfile(program):
+            parser.error(f"{program} is not there; build it first (docs/benchmarks.md)")
     load = os.getloadavg()[0]
     print(f"load average {load:.1f}" + (": **busy**" if load > math.ceil(0.5) else ""))
     compare_with_dense(arguments.batten, arguments.rounds)
     time_choice(arguments.batten, 10_000, arguments.rounds)
-    for size in map(int, arguments.sizes.split(",")):
+    for size in map(int, sizes):
         # The weights of smoothing_benchmark.cc, which says why.
         for weight in (1e-8 * size / 10000.0, 1e-12):
             compare_with_scipy(arguments, size, weight)

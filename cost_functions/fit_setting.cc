@@ -19,8 +19,8 @@ void GroupSorted(const BsplineBasis& basis, Sites* sites) {
   for (int begin = 0; begin < sites->size;) {
     span = basis.FindSpanFrom(span, t[begin]);
     const double next_knot = basis.knots()[static_cast<std::size_t>(span) + 1];
-    // The end of an open domain belongs to the span before it.
     __builtin_prefetch(t + begin + ahead);
+    // The end of an open domain belongs to the span before it.
     const bool last = !basis.periodic() && next_knot >= basis.domain_end();
     const auto end =
         last ? sites->size : FirstNotBelow(t, begin, sites->size, next_knot, begin + length);
