@@ -1,7 +1,9 @@
 // Free parameters: time of each method from the same starts to a gap of 1e-6 to the minimum of the
-// basin it ends in, beside ours in the pairs of runs that end in one basin. Prints a Markdown page.
+// basin it ends in, beside ours in the pairs of runs that end in one basin: from starts around the
+// best minimum, where most runs share their basin, and from circles, where few do. Prints a
+// Markdown page.
 //   free_race_benchmark [--starts=20] [--seconds=0.4]   starts per outline, most seconds per run
-// At the defaults it is done in less than a quarter of an hour.
+// At the defaults it is done in less than half an hour.
 
 #include <lbfgs.h>
 
@@ -17,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/comparison.h"
+#include "benchmarks/free_race_table.h"
 #include "experiments/csv_table.h"
 #include "experiments/start_comparison.h"
 #include "problems/data_folders.h"
@@ -94,12 +96,6 @@ double SecondsToGap(const Trace& trace, double start, double minimum) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Where a run of a method from a start has led, and how soon.
-struct Arrival {
-  double seconds = std::numeric_limits<double>::infinity();  // to the gap
-  BasinEnd basin;
-};
-
 Arrival RunOnce(const Problem& problem, const std::string& solver, double most_seconds) {
   Trace trace;
   Eigen::VectorXd end;
@@ -159,13 +155,22 @@ std::vector<std::string> Outlines() {
   return outlines;
 }
 
-std::unique_ptr<Problem> OutlineFit(const std::string& outline) {
+/// What one table is of.
+struct RaceSpec {
+  int control_points = 12;
+  int starts = 20;       // per outline
+  double seconds = 0.4;  // most per run
+  /// Disturbance of the best minimum that is known, in parts of its radius; 0: of a circle.
+  double near = 0.0;
+};
+
+std::unique_ptr<Problem> OutlineFit(const std::string& outline, int control_points) {
   std::string error;
   std::optional<DataSet> data = ReadDataSet(DataRoot() + "/data/" + outline, &error);
   if (!data) Fail(error);
   FitSpec spec;
   spec.closed = true;
-  spec.control_points = 12;
+  spec.control_points = control_points;
   spec.parameter_kind = ParameterKind::kFree;
   spec.start = "circle";
   std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), spec, &error);
@@ -173,69 +178,44 @@ std::unique_ptr<Problem> OutlineFit(const std::string& outline) {
   return problem;
 }
 
-/// Of the pairs of runs from one start whose ends are polished to one curve: how many there are,
-/// and the median of the ratio of times. Pairs of which neither arrives say nothing.
-struct PairedTimes {
-  int pairs = 0;
-  double ratio = std::numeric_limits<double>::quiet_NaN();
-};
+std::unique_ptr<Problem> DisturbedCircle(const Problem& problem, int k) {
+  std::string error;
+  auto from = FromDisturbedCircle(problem, 0.3, 1, k, &error);
+  if (from == nullptr) Fail(error);
+  return from;
+}
 
-PairedTimes Pair(const std::vector<std::unique_ptr<Problem>>& problems,
-                 const std::vector<Arrival>& of, const std::vector<Arrival>& ours) {
-  std::vector<double> ratios;
-  const std::size_t starts = of.size() / problems.size();
-  for (std::size_t k = 0; k < of.size(); ++k) {
-    const BasinEnd& a = of[k].basin;
-    const BasinEnd& b = ours[k].basin;
-    if (!a.polished || !b.polished) continue;
-    if (std::isinf(of[k].seconds) && std::isinf(ours[k].seconds)) continue;
-    const std::vector<int> basins = FindBasins(*problems[k / starts], {a, b});
-    if (basins[0] == basins[1]) ratios.push_back(of[k].seconds / ours[k].seconds);
+/// Control points of the lowest minimum that is found from a number of disturbed circles.
+Points BestMinimum(const Problem& problem) {
+  constexpr int kTries = 20;
+  BasinEnd best;
+  for (int k = 0; k < kTries; ++k) {
+    const Arrival arrival = RunOnce(*DisturbedCircle(problem, k), "foot_newton", 1.0);
+    const bool is_better = best.control_points.size() == 0 ||
+                           arrival.basin.energy_at_foot_points < best.energy_at_foot_points;
+    if (arrival.basin.polished && is_better) best = arrival.basin;
   }
-  PairedTimes paired;
-  paired.pairs = static_cast<int>(ratios.size());
-  if (paired.pairs > 0) paired.ratio = Median(ratios);
-  return paired;
+  if (best.control_points.size() == 0) Fail(problem.name() + ": no minimum was found");
+  return best.control_points;
 }
 
-double MedianSeconds(const std::vector<Arrival>& arrivals) {
-  std::vector<double> seconds;
-  for (const Arrival& arrival : arrivals) seconds.push_back(arrival.seconds);
-  return Median(seconds);
-}
-
-/// `value`, or that it is above `most` where more than half of the runs do not arrive.
-std::string Shown(double value, double most) {
-  char text[32];
-  const bool is_finite = std::isfinite(value);
-  std::snprintf(text, sizeof text, is_finite ? "%.3g" : "over %.3g", is_finite ? value : most);
-  return text;
-}
-
-/// `best`: median seconds of the method that the others are held against.
-void PrintRow(const std::string& solver, const std::vector<Arrival>& arrivals, double best,
-              double most_seconds, const std::vector<PairedTimes>& paired) {
-  int reached = 0;
-  double log_energy = 0.0;
-  for (const Arrival& arrival : arrivals) {
-    reached += std::isfinite(arrival.seconds) ? 1 : 0;
-    log_energy += std::log(arrival.basin.energy_at_foot_points);
-  }
-  const double median = MedianSeconds(arrivals);
-  std::printf("| `%s` | %d of %zu | %s | %s |", solver.c_str(), reached, arrivals.size(),
-              Shown(1e3 * median, 1e3 * most_seconds).c_str(),
-              Shown(median / best, most_seconds / best).c_str());
-  for (const PairedTimes& times : paired) {
-    if (times.pairs == 0) {
-      std::printf(" 0 | - |");
-    } else {
-      std::printf(" %d | %.3g |", times.pairs, times.ratio);
+/// All problems of a table, `starts` of each outline one after the other.
+std::vector<std::unique_ptr<Problem>> Starts(const RaceSpec& race) {
+  std::vector<std::unique_ptr<Problem>> starts;
+  for (const std::string& outline : Outlines()) {
+    const std::unique_ptr<Problem> problem = OutlineFit(outline, race.control_points);
+    const Points minimum = race.near > 0.0 ? BestMinimum(*problem) : Points();
+    for (int k = 0; k < race.starts; ++k) {
+      std::string error;
+      starts.push_back(race.near > 0.0 ? FromDisturbed(*problem, minimum, race.near, 1, k, &error)
+                                       : DisturbedCircle(*problem, k));
+      if (starts.back() == nullptr) Fail(error);
     }
   }
-  std::printf(" %.4g |\n", std::exp(log_energy / static_cast<double>(arrivals.size())));
+  return starts;
 }
 
-void Race(int starts, double most_seconds) {
+void Race(const RaceSpec& race) {
   // Ours first: the others are held against these.
   const std::vector<std::string> ours = {"foot_newton", "newton"};
   const std::vector<std::string> solvers = {"foot_newton",  "newton",
@@ -245,34 +225,25 @@ void Race(int starts, double most_seconds) {
                                             "anderson:pdm", "anderson/window=10:pdm",
                                             "lbfgs",        "ceres_lbfgs",
                                             kLibLbfgs,      "ceres_lm"};
-  std::vector<std::unique_ptr<Problem>> problems;
-  for (const std::string& outline : Outlines()) problems.push_back(OutlineFit(outline));
-  std::printf(
-      "%zu outlines of at most 200 points.\n\n"
-      "| method | reached | median ms | over that of `%s` | pairs with `%s` | times its time | "
-      "pairs "
-      "with `%s` | times its time | geometric mean of E at feet |\n"
-      "|---|---|---|---|---|---|---|---|---|\n",
-      problems.size(), ours[0].c_str(), ours[0].c_str(), ours[1].c_str());
+  const std::string from = race.near > 0.0 ? "best minimum" : "circle";
+  std::printf("\n## From a disturbed %s, %d control points\n\n", from.c_str(), race.control_points);
+  PrintHead(ours);
+  const std::vector<std::unique_ptr<Problem>> starts = Starts(race);
   std::map<std::string, std::vector<Arrival>> arrivals;
   for (const std::string& solver : solvers) {
-    std::fprintf(stderr, "%s\n", solver.c_str());
-    for (const auto& problem : problems) {
-      for (int k = 0; k < starts; ++k) {
-        std::string error;
-        const auto from = FromDisturbedCircle(*problem, 0.3, 1, k, &error);
-        if (from == nullptr) Fail(error);
-        arrivals[solver].push_back(RunOnce(*from, solver, most_seconds));
-      }
+    std::fprintf(stderr, "%s, %s\n", from.c_str(), solver.c_str());
+    for (const auto& start : starts) {
+      arrivals[solver].push_back(RunOnce(*start, solver, race.seconds));
     }
   }
   for (const std::string& solver : solvers) {
     std::vector<PairedTimes> paired;
     for (const std::string& one : ours) {
-      paired.push_back(Pair(problems, arrivals[solver], arrivals[one]));
+      paired.push_back(Pair(starts, arrivals[solver], arrivals[one]));
     }
-    PrintRow(solver, arrivals[solver], MedianSeconds(arrivals[ours[0]]), most_seconds, paired);
+    PrintRow(solver, arrivals[solver], MedianSeconds(arrivals[ours[0]]), race.seconds, paired);
   }
+  std::fflush(stdout);
 }
 
 /// The value of "--name=VALUE", a number from `least` on; fails for any other.
@@ -290,27 +261,30 @@ double FlagValue(const std::string& argument, double least) {
 }  // namespace batten
 
 int main(int argc, char** argv) {
-  int starts = 20;
-  double seconds = 0.4;
+  batten::RaceSpec race;
   for (int k = 1; k < argc; ++k) {
     const std::string argument = argv[k];
     if (argument.rfind("--starts=", 0) == 0) {
-      starts = static_cast<int>(std::min(batten::FlagValue(argument, 1.0), 1e6));
+      race.starts = static_cast<int>(std::min(batten::FlagValue(argument, 1.0), 1e6));
     } else if (argument.rfind("--seconds=", 0) == 0) {
-      seconds = batten::FlagValue(argument, 1e-3);
+      race.seconds = batten::FlagValue(argument, 1e-3);
     } else {
       batten::Fail("unknown argument " + argument + "; known: --starts=N --seconds=S");
     }
   }
   std::printf(
-      "# Free parameters\n\nClosed outlines, 12 control points, %d disturbed circles each, one "
-      "thread. A run's time is that to a gap of 1e-6 to the minimum of its own basin, found by "
-      "polishing its end; runs that do not arrive in %g s count as slowest. Two runs from one "
-      "start "
-      "are a pair where both ends are polished to one curve (1e-6 of the size), and *times its "
-      "time* "
-      "is the median over pairs of the ratio of their times. ",
-      starts, seconds);
-  batten::Race(starts, seconds);
+      "# Free parameters\n\nClosed outlines of at most 200 points, %d starts each, one thread. A "
+      "run's time is that to a gap of 1e-6 to the minimum of its own basin, found by polishing its "
+      "end; runs that do not arrive in %g s count as slowest. Two runs from one start are a pair "
+      "where both ends are polished to one curve (1e-6 of the size), and *times its time* is the "
+      "median over pairs of the ratio of their times.\n",
+      race.starts, race.seconds);
+  race.near = 0.05;
+  for (const int control_points : {8, 12}) {
+    race.control_points = control_points;
+    batten::Race(race);
+  }
+  race.near = 0.0;
+  batten::Race(race);
   return 0;
 }

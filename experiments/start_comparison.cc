@@ -150,9 +150,19 @@ std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double dist
   TakeApart(problem, &data, &spec);
   spec.start = "circle";
   spec.start_points.resize(0, 0);
-  const std::unique_ptr<Problem> round = MakeFitProblem(data, spec, error);
+  const std::unique_ptr<Problem> round = MakeFitProblem(std::move(data), std::move(spec), error);
   if (round == nullptr) return nullptr;
-  spec.start_points = round->curve_fit()->ControlPoints(round->start());
+  return FromDisturbed(*round, round->curve_fit()->ControlPoints(round->start()), disturbance, seed,
+                       k, error);
+}
+
+std::unique_ptr<Problem> FromDisturbed(const Problem& problem, const Points& control_points,
+                                       double disturbance, std::uint64_t seed, int k,
+                                       std::string* error) {
+  DataSet data;
+  FitSpec spec;
+  TakeApart(problem, &data, &spec);
+  spec.start_points = control_points;
   const Eigen::RowVectorXd mean = spec.start_points.colwise().mean();
   const double radius = (spec.start_points.rowwise() - mean).rowwise().norm().mean();
   std::mt19937_64 random(seed * 1'000'003 + static_cast<std::uint64_t>(k));

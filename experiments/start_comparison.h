@@ -42,6 +42,11 @@ struct StartComparison {
 std::unique_ptr<Problem> FromDisturbedCircle(const Problem& problem, double disturbance,
                                              std::uint64_t seed, int k, std::string* error);
 
+/// The same from `control_points` (user units, n x d) instead of a circle.
+std::unique_ptr<Problem> FromDisturbed(const Problem& problem, const Points& control_points,
+                                       double disturbance, std::uint64_t seed, int k,
+                                       std::string* error);
+
 /// False with one sentence in `error`, as for fixed parameters.
 bool CompareStarts(const Problem& problem, const StartComparisonSpec& spec,
                    StartComparison* comparison, std::string* error);

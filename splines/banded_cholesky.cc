@@ -110,8 +110,8 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
   num_swept_ = n_ - dense_size;
   MeasureMatrix(matrix, dense_size);
   FirstPending(matrix.band(), &pending_);
-  factor_.resize(static_cast<Eigen::Index>(num_swept_) * width_);
-  border_.resize(static_cast<Eigen::Index>(num_swept_) * num_border_);
+  factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
+  border_.resize(static_cast<std::size_t>(num_swept_) * num_border_);
   const bool swept = WithFixedShape(
       width_, 1, [&](auto width, auto) { return Sweep<width>(matrix.band(), &pending_); });
   if (!swept) return false;
@@ -135,7 +135,7 @@ void BandedCholesky::MeasureMatrix(const NormalBand& matrix, int dense_size) {
   for (double& limit : limits_) limit *= n_ * kEpsilon;
 }
 
-void BandedCholesky::FirstPending(const std::vector<double>& band, Pending* first) const {
+void BandedCholesky::FirstPending(const LargeArray& band, Pending* first) const {
   const int border = width_ - 1;
   Pending& pending = *first;
   pending.band.assign(width_ * width_, 0.0);
@@ -182,7 +182,7 @@ template <int kWidth>
 // Loops over the window are unrolled by order: its entries then are registers, while an array in
 // memory would be written in other pieces than it is read, which stalls.
 template <int kWidth>
-bool BandedCholesky::Sweep(const std::vector<double>& band, Pending* pending) {
+bool BandedCholesky::Sweep(const LargeArray& band, Pending* pending) {
   const int width = kWidth > 0 ? kWidth : width_;
   // What is left of rows j.., row i from its diagonal to column j + width - 1; the first of them.
   auto window = ZeroScratch < kWidth < 0 ? -1 : kWidth * kWidth > (width * width);
@@ -316,7 +316,8 @@ double BandedCholesky::ConditionEstimate() const {
   // Hager 1984 with Higham's changes of 1988: ||N^-1||_1 is the maximum of the convex function
   // ||N^-1 x||_1 over the unit ball, climbed from corner to corner. Higham's last vector, of
   // alternating signs, is solved for beside the first one: a solve waits for its own results.
-  Points pair(n_, 2);
+  LargeArray memory(2 * static_cast<std::size_t>(n_));
+  Eigen::Map<Points> pair(memory.data(), n_, 2);
   const double share = 1.0 / n_;
   const double slope = 1.0 / std::max(n_ - 1, 1);
   for (int i = 0; i < n_; ++i) {

@@ -30,12 +30,12 @@ class BandedCholesky {
     std::vector<double> border;  // (width - 1) x (width - 1): rows j.., border columns
     std::vector<double> corner;  // border x border
   };
-  void FirstPending(const std::vector<double>& band, Pending* first) const;
+  void FirstPending(const LargeArray& band, Pending* first) const;
   /// Of the matrix: what pivots are held against, and the norm.
   void MeasureMatrix(const NormalBand& matrix, int dense_size);
   /// Eliminates columns 0..num_swept_ - 1. kWidth < 0: any width. False as Factor().
   template <int kWidth>
-  bool Sweep(const std::vector<double>& band, Pending* pending);
+  bool Sweep(const LargeArray& band, Pending* pending);
   /// The border's part of column j, whose row of the factor is u. False once the fill is zero.
   template <int kWidth>
   bool SweepBorder(int j, const double* u, Pending* pending);
@@ -55,9 +55,8 @@ class BandedCholesky {
   int num_bordered_ = 0;  // rows with fill in the border
   double norm_ = 0.0;
   double largest_diagonal_ = 0.0;
-  // Not zeroed when they grow.
-  Eigen::VectorXd factor_;     // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
-  Eigen::VectorXd border_;     // as many rows x num_border_: U(j, n - num_border_ + b)
+  LargeArray factor_;          // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
+  LargeArray border_;          // as many rows x num_border_: U(j, n - num_border_ + b)
   std::vector<double> dense_;  // upper triangle, row-major, 1 / D on its diagonal
   // Of Factor alone, kept for the next one.
   Pending pending_;

@@ -1,33 +1,13 @@
 #include "splines/banded_rows.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
-#include <new>
 
 #include "splines/row_pack.h"
 
 namespace batten {
 namespace {
 
-constexpr std::size_t kAlignment = 64;  // a cache line
-constexpr int kLineSize = kAlignment / sizeof(double);
-
-/// Not initialised. Large blocks ask for huge pages: the first touch of small ones takes twice as
-/// long as copying the rows.
-double* Allocate(std::size_t size) {
-  const std::size_t bytes = std::max<std::size_t>(size, 1) * sizeof(double);
-  void* const data = ::operator new[](bytes, std::align_val_t(kAlignment));
-#ifdef MADV_HUGEPAGE
-  constexpr std::size_t kPageSize = 4096;
-  const std::size_t skipped = -reinterpret_cast<std::size_t>(data) % kPageSize;
-  constexpr std::size_t kHugePageSize = 2 << 20;
-  if (bytes > 2 * kHugePageSize) {
-    madvise(static_cast<char*>(data) + skipped, bytes - skipped, MADV_HUGEPAGE);
-  }
-#endif
-  return static_cast<double*>(data);
-}
+constexpr int kLineSize = kCacheLine / sizeof(double);
 
 /// Open matrices have no column n: a row that was padded on the right is moved left instead.
 int PaddedFirstColumn(const RowShape& shape, int first_column) {
@@ -63,10 +43,6 @@ RowShape CommonShape(const std::vector<const RowSource*>& sources) {
 
 }  // namespace
 
-void BandedRows::AlignedDeleter::operator()(double* data) const {
-  ::operator delete[](data, std::align_val_t(kAlignment));
-}
-
 /// Second pass: copies rows to where the counts of the first one put them.
 class BandedRowsBuilder : public RowConsumer {
  public:
@@ -85,7 +61,7 @@ class BandedRowsBuilder : public RowConsumer {
         rows_->shape_.num_rows += num_rows;
       }
     }
-    rows_->data_.reset(Allocate(size));
+    rows_->data_.resize(size);
     filled_.assign(counts.size(), 0);
   }
 
@@ -109,13 +85,13 @@ class BandedRowsBuilder : public RowConsumer {
  private:
   void Clear(const BandedRows::Entry& entry) {
     const int columns = rows_->shape_.width + rows_->shape_.dimension;
-    std::fill_n(rows_->data_.get() + entry.begin, entry.stride * columns, 0.0);
+    std::fill_n(rows_->data_.data() + entry.begin, entry.stride * columns, 0.0);
   }
 
   void CopyRows(const RowBlock& block, int from, int count, int shift,
                 const BandedRows::Entry& entry, int to) {
     const RowShape& shape = rows_->shape_;
-    double* target = rows_->data_.get() + entry.begin + to;
+    double* target = rows_->data_.data() + entry.begin + to;
     const int width = std::min(source_width_, shape.width - shift);
     for (int j = 0; j < width; ++j) {
       std::copy_n(block.coefficients + j * block.stride + from, count,
@@ -151,7 +127,7 @@ RowBlock BandedRows::block(std::size_t index) const {
   block.first_column = entry.first_column;
   block.num_rows = entry.num_rows;
   block.stride = entry.stride;
-  block.coefficients = data_.get() + entry.begin;
+  block.coefficients = data_.data() + entry.begin;
   block.right_hand_sides = block.coefficients + shape_.width * entry.stride;
   return block;
 }
@@ -159,7 +135,7 @@ RowBlock BandedRows::block(std::size_t index) const {
 RowBlock BandedRows::BlockAndPrefetch(std::size_t index) const {
   if (index + 1 < blocks_.size()) {
     const Entry& next = blocks_[index + 1];
-    const double* const data = data_.get() + next.begin;
+    const double* const data = data_.data() + next.begin;
     const int size = next.stride * (shape_.width + shape_.dimension);
     for (int k = 0; k < size; k += kLineSize) __builtin_prefetch(data + k);
   }

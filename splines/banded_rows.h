@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "splines/large_array.h"
 #include "splines/row_block.h"
 
 namespace batten {
@@ -55,12 +56,9 @@ class BandedRows : public RowSource {
     std::size_t begin;  // of the block's coefficients in data_
     int first_row;
   };
-  struct AlignedDeleter {
-    void operator()(double* data) const;
-  };
   RowShape shape_;
   std::vector<Entry> blocks_;
-  std::unique_ptr<double[], AlignedDeleter> data_;
+  LargeArray data_;
 };
 
 }  // namespace batten

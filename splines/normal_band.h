@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "splines/large_array.h"
 #include "splines/row_block.h"
 
 namespace batten {
@@ -27,8 +28,8 @@ class NormalBand : public RowConsumer {
   int width() const { return shape_.width; }
   int dimension() const { return shape_.dimension; }
   bool cyclic() const { return shape_.cyclic; }
-  const std::vector<double>& band() const { return band_; }
-  std::vector<double>& band() { return band_; }
+  const LargeArray& band() const { return band_; }
+  LargeArray& band() { return band_; }
   const Points& right_hand_side() const { return right_hand_side_; }             // B, n x d
   double squared_norm_of_data() const { return scratch_.squared_norm_of_data; }  // ||Q||^2
 
@@ -80,7 +81,7 @@ class NormalBand : public RowConsumer {
   void VisitUpperEntries(const Visitor& visit) const;
 
   RowShape shape_;
-  std::vector<double> band_;
+  LargeArray band_;
   Points right_hand_side_;
   Scratch scratch_;
 };

@@ -64,7 +64,7 @@ TEST(NormalBand, AddsEntriesThatFallOnOnePlace) {
   ListedRows listed(1, 3, 1, true);
   listed.Add(0, {1, 2, 3}, {5});
   const NormalBand band = NormalBand::FromRows(listed);
-  EXPECT_EQ(band.band(), (std::vector<double>{14, 8, 3}));  // 1+4+9, 1*2+2*3, 1*3
+  EXPECT_EQ(band.band(), (LargeArray{14, 8, 3}));  // 1+4+9, 1*2+2*3, 1*3
   EXPECT_EQ(band.ToDense()(0, 0), 36);
   EXPECT_EQ(band.Diagonal()[0], 36);
   EXPECT_EQ(band.right_hand_side()(0, 0), 30);
