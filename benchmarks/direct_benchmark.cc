@@ -17,21 +17,6 @@ namespace {
 constexpr int kPoints = 1000000;
 constexpr int kControlPoints = 10000;
 
-/// The solver alone, from the problem's start: rows are streamed, nothing is left from a call
-/// before.
-Eigen::VectorXd Solve(const Problem& problem, const std::string& solver_name, int threads = 1) {
-  std::string error;
-  const std::unique_ptr<Solver> solver =
-      SolverRegistry::Global().Make({solver_name, {}, nullptr}, nullptr, &error);
-  CHECK(solver != nullptr) << error;
-  Objective objective(&problem, nullptr);
-  IdleContext context(threads);
-  Eigen::VectorXd x = objective.start();
-  const Outcome outcome = solver->Minimize(&objective, &context, &x);
-  CHECK(outcome.reason == StopReason::kSolved) << outcome.message;
-  return x;
-}
-
 /// E in the user's units: the peers' fits must have the same.
 void ReportEnergy(benchmark::State& state, const Problem& problem, const Eigen::VectorXd& x) {
   double energy = 0.0;
@@ -53,7 +38,7 @@ void FromDataSet(benchmark::State& state, const std::string& solver_name, bool c
     DataSet copy = data;
     const double start = Seconds(threads);
     problem = MakeLoopFit(std::move(copy), kControlPoints, closed);
-    x = Solve(*problem, solver_name, threads);
+    x = SolveAlone(*problem, solver_name, threads);
     const Points control_points = problem->curve_fit()->ControlPoints(x);
     state.SetIterationTime(Seconds(threads) - start);
     benchmark::DoNotOptimize(control_points.data());
@@ -67,7 +52,7 @@ void FromProblem(benchmark::State& state, const std::string& solver_name, bool c
   Eigen::VectorXd x;
   for (auto _ : state) {
     const double start = Seconds(threads);
-    x = Solve(problem, solver_name, threads);
+    x = SolveAlone(problem, solver_name, threads);
     state.SetIterationTime(Seconds(threads) - start);
     benchmark::DoNotOptimize(x.data());
   }
@@ -110,7 +95,7 @@ void LargeFit(benchmark::State& state, const std::string& solver_name) {
     const double start = CpuSeconds();
     const std::unique_ptr<Problem> problem =
         MakeLoopFit(std::move(data), kManyControlPoints, /*closed=*/false);
-    const Eigen::VectorXd x = Solve(*problem, solver_name);
+    const Eigen::VectorXd x = SolveAlone(*problem, solver_name);
     const Points control_points = problem->curve_fit()->ControlPoints(x);
     state.SetIterationTime(CpuSeconds() - start);
     benchmark::DoNotOptimize(control_points.data());

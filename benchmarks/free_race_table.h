@@ -59,7 +59,8 @@ inline std::string Shown(double value, double most) {
 
 inline void PrintHead(const std::vector<std::string>& ours) {
   std::printf("| method | reached | median ms | over that of `%s` |", ours[0].c_str());
-  for (const std::string& one : ours) std::printf(" pairs with `%s` | times its time |", one.c_str());
+  for (const std::string& one : ours)
+    std::printf(" pairs with `%s` | times its time |", one.c_str());
   std::printf(" geometric mean of E at feet |\n|---|---|---|---|");
   for (std::size_t k = 0; k < ours.size(); ++k) std::printf("---|---|");
   std::printf("---|\n");
@@ -67,7 +68,7 @@ inline void PrintHead(const std::vector<std::string>& ours) {
 
 /// `best`: median seconds of the method that the others are held against.
 inline void PrintRow(const std::string& solver, const std::vector<Arrival>& arrivals, double best,
-              double most_seconds, const std::vector<PairedTimes>& paired) {
+                     double most_seconds, const std::vector<PairedTimes>& paired) {
   int reached = 0;
   double log_energy = 0.0;
   for (const Arrival& arrival : arrivals) {

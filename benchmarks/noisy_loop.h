@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "problems/fit_problem.h"
+#include "problems/objective.h"
 #include "solvers/run_context.h"
+#include "solvers/solver_registry.h"
 
 namespace batten {
 
@@ -106,6 +108,23 @@ class IdleContext final : public RunContext {
  private:
   int threads_;
 };
+
+/// The end of a direct solver alone, from the problem's start: rows are streamed, nothing is left
+/// from a call before. `message`, if not null: what it says of its end.
+inline Eigen::VectorXd SolveAlone(const Problem& problem, const std::string& solver_name,
+                                  int threads = 1, std::string* message = nullptr) {
+  std::string error;
+  const std::unique_ptr<Solver> solver =
+      SolverRegistry::Global().Make({solver_name, {}, nullptr}, nullptr, &error);
+  CHECK(solver != nullptr) << error;
+  Objective objective(&problem, nullptr);
+  IdleContext context(threads);
+  Eigen::VectorXd x = objective.start();
+  const Outcome outcome = solver->Minimize(&objective, &context, &x);
+  CHECK(outcome.reason == StopReason::kSolved) << outcome.message;
+  if (message != nullptr) *message = outcome.message;
+  return x;
+}
 
 }  // namespace batten
 

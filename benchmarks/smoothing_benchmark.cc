@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "benchmarks/noisy_loop.h"
-#include "problems/objective.h"
-#include "solvers/solver_registry.h"
 
 namespace batten {
 namespace {
@@ -60,24 +58,12 @@ std::unique_ptr<Problem> MakeSmoothing(int n, const std::string& weight) {
 void Smooth(benchmark::State& state, const std::string& solver_name, int n,
             const std::string& weight) {
   const std::unique_ptr<Problem> problem = MakeSmoothing(n, weight);
-  std::string error;
-  const std::unique_ptr<Solver> solver =
-      SolverRegistry::Global().Make({solver_name, {}, nullptr}, nullptr, &error);
-  CHECK(solver != nullptr) << error;
-  const auto solve = [&] {
-    Objective objective(problem.get(), nullptr);
-    IdleContext context;
-    Eigen::VectorXd x = objective.start();
-    const Outcome outcome = solver->Minimize(&objective, &context, &x);
-    CHECK(outcome.reason == StopReason::kSolved) << outcome.message;
-    benchmark::DoNotOptimize(x.data());
-    return outcome.message;
-  };
   // A process waits for its first pages longer than for any that it has given back.
-  const std::string message = solve();
+  std::string message;
+  SolveAlone(*problem, solver_name, 1, &message);
   for (auto _ : state) {
     const double begin = CpuSeconds();
-    solve();
+    benchmark::DoNotOptimize(SolveAlone(*problem, solver_name).data());
     state.SetIterationTime(CpuSeconds() - begin);
   }
   if (!message.empty()) state.SetLabel(message);

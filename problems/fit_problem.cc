@@ -282,7 +282,8 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
       return nullptr;
     }
     const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;
-    if (robust.has_value() && !is_asked_for) problem->SetStart(*robust);
+    fit->starts_robustly_ = robust.has_value() && !is_asked_for;
+    if (fit->starts_robustly_) problem->SetStart(*robust);
   }
   if (!AddConditions(*fit, constraints, problem.get(), error)) return nullptr;
   bool has_parameters = !is_free;

@@ -85,6 +85,8 @@ class CurveFit {
   OrderedParameters Order(const Eigen::VectorXd& t) const;
   /// The parameters that go with the variables t: themselves, or those in order if that is kept.
   Eigen::VectorXd OrderedIfKept(Eigen::VectorXd t) const;
+  /// The start is Huber's answer (problems/robust_start.h).
+  bool starts_robustly() const { return starts_robustly_; }
   int dimension() const { return static_cast<int>(data_.points.cols()); }
   /// Longest side of the data's box, in the user's units; 1 if all points are equal.
   double size() const { return size_; }
@@ -123,6 +125,7 @@ class CurveFit {
   DataSet data_;
   std::optional<BsplineBasis> basis_;
   Eigen::VectorXd parameters_;
+  bool starts_robustly_ = false;
   bool sorted_ = false;  // parameters_ are known not to decrease
   std::pair<double, double> domain_ = {0.0, 1.0};
   double size_ = 1.0;

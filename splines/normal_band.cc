@@ -118,25 +118,30 @@ bool NormalBand::Overlaps() const {
   return shape_.cyclic && shape_.num_columns < 2 * shape_.width - 1;
 }
 
-void NormalBand::MultiplyRow(int j, const double* v, const double* right, double* product) const {
-  const int d = shape_.dimension;
+template <typename Visitor>
+void NormalBand::VisitRow(int j, const Visitor& visit) const {
   const int n = shape_.num_columns;
-  double* target = product + static_cast<std::size_t>(j) * d;
-  std::fill_n(target, d, 0.0);
-  const auto add = [&](int row, int k, int column) {
-    const double entry = band_[static_cast<std::size_t>(row) * shape_.width + k];
-    const double* source = v + static_cast<std::size_t>(column) * d;
-    for (int c = 0; c < d; ++c) target[c] += entry * source[c];
+  const auto entry = [this](int row, int k) {
+    return band_[static_cast<std::size_t>(row) * shape_.width + k];
   };
   for (int k = shape_.width - 1; k > 0; --k) {
     if (j - k < 0 && !shape_.cyclic) continue;
     const int before = j >= k ? j - k : ((j - k) % n + n) % n;
-    add(before, k, before);
+    visit(before, entry(before, k));
   }
-  for (int k = 0; k < shape_.width; ++k) {
-    if (j + k >= n && !shape_.cyclic) break;
-    add(j, k, WrappedColumn(j + k));
+  for (int k = 0; k < shape_.width && (shape_.cyclic || j + k < n); ++k) {
+    visit(WrappedColumn(j + k), entry(j, k));
   }
+}
+
+void NormalBand::MultiplyRow(int j, const double* v, const double* right, double* product) const {
+  const int d = shape_.dimension;
+  double* target = product + static_cast<std::size_t>(j) * d;
+  std::fill_n(target, d, 0.0);
+  VisitRow(j, [&](int column, double entry) {
+    const double* source = v + static_cast<std::size_t>(column) * d;
+    for (int c = 0; c < d; ++c) target[c] += entry * source[c];
+  });
   const std::size_t place = static_cast<std::size_t>(j) * d;
   for (int c = 0; right != nullptr && c < d; ++c) target[c] = right[place + c] - target[c];
 }
@@ -224,17 +229,8 @@ std::vector<double> NormalBand::Diagonal() const {
 }
 
 double NormalBand::AbsoluteRowSum(int j) const {
-  const int n = shape_.num_columns;
   double sum = 0.0;
-  for (int k = shape_.width - 1; k > 0; --k) {
-    const int before = j >= k ? j - k : j - k + n;
-    if (j >= k || shape_.cyclic) {
-      sum += std::abs(band_[static_cast<std::size_t>(before) * shape_.width + k]);
-    }
-  }
-  for (int k = 0; k < shape_.width && (shape_.cyclic || j + k < n); ++k) {
-    sum += std::abs(band_[static_cast<std::size_t>(j) * shape_.width + k]);
-  }
+  VisitRow(j, [&sum](int /*column*/, double entry) { sum += std::abs(entry); });
   return sum;
 }
 

@@ -64,6 +64,9 @@ class NormalBand : public RowConsumer {
   int WrappedColumn(int column) const {
     return column < shape_.num_columns ? column : column % shape_.num_columns;
   }
+  /// visit(column, entry) for what stands in row j of N, any j.
+  template <typename Visitor>
+  void VisitRow(int j, const Visitor& visit) const;
   /// Of row j, any j, unless the band overlaps.
   double AbsoluteRowSum(int j) const;
   /// visit(row, sum) for each row, unless the band overlaps.

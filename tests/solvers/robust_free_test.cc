@@ -144,6 +144,24 @@ TEST_P(RobustFreeFits, AreHardlyWorseThanCleanOnesWhenATenthOfThePointsIsThrownA
   }
 }
 
+// At ten times the disturbance the median is 1.18: lower minima far from Huber's answer.
+TEST(RobustFreeFits, OfBestOfStayNearTheRobustStart) {
+  constexpr const char* kSolver = "best_of:foot_newton";
+  constexpr int kIterations = 1000;
+  std::vector<double> ratios;
+  for (unsigned seed = 100; seed < 150; ++seed) {
+    const ThrownPoints clean(seed, false), thrown(seed, true);
+    const auto plain = clean.Fit("free_parameter", KindOf(true));
+    const SolverTrial reference(*plain, kSolver, {kIterations, 1e-6, true});
+    const auto robust = thrown.Fit(RobustTerm(true, "tukey", "mad"), KindOf(true));
+    const SolverTrial trial(*robust, kSolver, {kIterations, 1e-6, true});
+    ratios.push_back(thrown.ErrorAtFeet(*robust, trial.all) /
+                     clean.ErrorAtFeet(*plain, reference.all));
+  }
+  EXPECT_LE(Median(ratios), 1.15);
+  RecordProperty("worst", NumberText(*std::max_element(ratios.begin(), ratios.end())));
+}
+
 TEST(RobustFreeFits, TakeLossesOnOtherTermsToo) {
   const ThrownPoints thrown(24, true);
   for (const char* solver : {"newton", "foot_newton", "lm_schur", "pdm", "tdm", "sdm", "gi"}) {
