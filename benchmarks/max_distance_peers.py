@@ -30,7 +30,10 @@ from scipy.interpolate import BSpline, splprep
 from scipy.spatial import cKDTree
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data")
-FILES = ["coasts/great_britain_10m.csv", "curves3d/gps_hike_xyz_open.csv",
+FILES = ["coasts/great_britain_10m.csv", "coasts/iceland_10m.csv",
+         "coasts/border_dr_congo_10m.csv", "coasts/river_marne_open.csv",
+         "coasts/river_seine_open.csv", "coasts/terrain_contour_500p5m_open.csv",
+         "curves3d/gps_hike_xyz_open.csv", "tracks/gps_ride_open.csv", "tracks/gps_run_open.csv",
          "animals/rhino_2000.csv", "animals/cat_2000.csv", "animals/squirrel_2000.csv",
          "animals/dolphin_2000.csv", "airfoils/naca2412_open.csv",
          "curves3d/protein_3aid_a_ca_open.csv"]

@@ -40,6 +40,15 @@ struct AuditedIntegral {
   std::vector<double> span_factors;  ///< Of the spans that are not empty; none: all 1.
 };
 
+/// A term: factor times Gauss and Legendre's sum, with so many points a span, for the integral over
+/// the arc length s of kappa^2 or, `variation`, of |d(kappa b) / ds|^2, b the binormal.
+struct AuditedBending {
+  bool variation = false;
+  int points = 4;
+  double factor = 1.0;
+  std::vector<double> span_factors;  ///< As AuditedIntegral's.
+};
+
 /// A term: factor * rho(|C^(k)(t) - value|^2) at the begin or the end t of an open curve's domain.
 struct AuditedEnd {
   bool at_end = false;
@@ -93,6 +102,7 @@ struct AuditedFit {
   std::vector<double> weights;         // m, or empty: all 1
   std::vector<AuditedDistance> distances = std::vector<AuditedDistance>(1);
   std::vector<AuditedIntegral> integrals;
+  std::vector<AuditedBending> bendings;
   std::vector<AuditedEnd> ends;
   /// Of free parameters, m; empty: they are fixed. Those past an end are given as that end.
   std::vector<ParameterState> parameter_states;

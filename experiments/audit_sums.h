@@ -1,6 +1,9 @@
 #ifndef BATTEN_EXPERIMENTS_AUDIT_SUMS_H_
 #define BATTEN_EXPERIMENTS_AUDIT_SUMS_H_
 
+#include <glog/logging.h>
+
+#include <cmath>
 #include <vector>
 
 #include "experiments/audit.h"
@@ -37,7 +40,31 @@ struct AuditSums {
   Real extent[kMostCoordinates] = {};
 };
 
-/// Adds the integrals and ends of `fit`.
+/// visit(begin, length, factor) for every span of the domain that is not empty: `factor` times that
+/// one's own, of which there are none or as many as spans.
+template <typename Visitor>
+void VisitSpans(const AuditedFit& fit, const AuditCurve& curve, AuditSums::Real factor,
+                const std::vector<double>& span_factors, const Visitor& visit) {
+  std::size_t num_spans = 0;
+  for (auto s = static_cast<std::size_t>(fit.degree); fit.knots[s] < curve.domain_end(); ++s) {
+    const AuditSums::Real begin = fit.knots[s];
+    const AuditSums::Real length = fit.knots[s + 1] - begin;
+    if (!(length > 0)) continue;
+    visit(begin, length, span_factors.empty() ? factor : factor * span_factors.at(num_spans));
+    ++num_spans;
+  }
+  CHECK(span_factors.empty() || span_factors.size() == num_spans);
+}
+
+/// By this part of a span the run moves the nodes in it, which it rounds to double.
+inline AuditSums::Real NodeRounding(AuditSums::Real begin, AuditSums::Real length) {
+  return (std::abs(begin) + length) / length;
+}
+
+/// Adds a bending of `fit`; `data_sizes` as DataSizes().
+void AddBending(const AuditedFit& fit, const AuditedBending& bending,
+                const std::vector<AuditSums::Real>& data_sizes, AuditCurve* curve, AuditSums* sums);
+/// Adds the integrals, bendings and ends of `fit`.
 void AddTermsBesidePoints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums);
 /// The largest coordinates of the data that the run's own, which are centred, can come from, d.
 std::vector<AuditSums::Real> DataSizes(const AuditedFit& fit, const AuditSums& sums);

@@ -94,24 +94,15 @@ void AddIntegral(const AuditedFit& fit, const AuditedIntegral& integral,
                  const std::vector<Real>& data_sizes, AuditCurve* curve, AuditSums* sums) {
   const int k = integral.derivative;
   const Rule rule = FejerRule(2 * (fit.degree - k) + 1);
-  std::size_t num_spans = 0;
-  for (auto s = static_cast<std::size_t>(fit.degree); fit.knots[s] < curve->domain_end(); ++s) {
-    const Real begin = fit.knots[s];
-    const Real length = fit.knots[s + 1] - begin;
-    if (!(length > 0)) continue;
-    const Real factor = integral.span_factors.empty() ? static_cast<Real>(integral.factor)
-                                                      : static_cast<Real>(integral.factor) *
-                                                            integral.span_factors.at(num_spans);
-    ++num_spans;
-    // The run rounds its nodes to double: by this part of the span.
-    const Real relative = (std::abs(begin) + length) / length;
+  const auto add_span = [&](Real begin, Real length, Real factor) {
     for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
       curve->MoveTo(begin + (1 + rule.nodes[g]) * length / 2);
-      AddPlace(fit, {k, factor * rule.weights[g] * length / 2, {}, {}, relative}, data_sizes, curve,
-               sums);
+      const Place place = {
+          k, factor * rule.weights[g] * length / 2, {}, {}, NodeRounding(begin, length)};
+      AddPlace(fit, place, data_sizes, curve, sums);
     }
-  }
-  CHECK(integral.span_factors.empty() || integral.span_factors.size() == num_spans);
+  };
+  VisitSpans(fit, *curve, integral.factor, integral.span_factors, add_span);
 }
 
 }  // namespace
@@ -127,10 +118,13 @@ std::vector<Real> DataSizes(const AuditedFit& fit, const AuditSums& sums) {
 }
 
 void AddTermsBesidePoints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums) {
-  if (fit.integrals.empty() && fit.ends.empty()) return;
+  if (fit.integrals.empty() && fit.bendings.empty() && fit.ends.empty()) return;
   const std::vector<Real> data_sizes = DataSizes(fit, *sums);
   for (const AuditedIntegral& integral : fit.integrals) {
     AddIntegral(fit, integral, data_sizes, curve, sums);
+  }
+  for (const AuditedBending& bending : fit.bendings) {
+    AddBending(fit, bending, data_sizes, curve, sums);
   }
   for (const AuditedEnd& end : fit.ends) {
     CHECK(!fit.periodic && end.value.size() == static_cast<std::size_t>(fit.dimension));

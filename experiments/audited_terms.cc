@@ -43,6 +43,18 @@ AuditedIntegral Integral(const CurveFit& fit, const OptionValues& options) {
   return integral;
 }
 
+AuditedBending Bending(const CurveFit& fit, const OptionValues& options) {
+  AuditedBending bending;
+  bending.variation = options.Word("measure") == "variation";
+  bending.points = options.Integer("points");
+  bending.factor = options.Real("weight");
+  if (options.Word("units") == "scale_free") {
+    bending.factor *= std::pow(fit.size(), bending.variation ? 5 : 3);
+  }
+  bending.span_factors = fit.spec().span_weights;
+  return bending;
+}
+
 /// The factor of the residual.
 double Unit(const BsplineBasis& basis, int derivative, const OptionValues& options, bool at_end) {
   if (derivative == 0) return 1.0;
@@ -95,9 +107,11 @@ bool AddTerms(const Problem& problem, AuditedFit* plain) {
       plain->distances.push_back({options.Real("weight"), LossOf(fit, options)});
       continue;
     }
-    if (name.name == "fairing") {
+    const bool is_bending = name.name == "curve_fairing";
+    if (name.name == "fairing" || is_bending) {
       if (term.family->loss() != nullptr) return false;
-      plain->integrals.push_back(Integral(fit, options));
+      if (is_bending) plain->bendings.push_back(Bending(fit, options));
+      if (!is_bending) plain->integrals.push_back(Integral(fit, options));
       continue;
     }
     int derivative = -1;

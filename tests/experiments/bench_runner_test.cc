@@ -176,7 +176,7 @@ TEST_F(BenchRunnerTest, FlagsALiar) {
 
 TEST_F(BenchRunnerTest, FlagsALiarWhereTheAuditDoesNotApply) {
   const RegisteredSolver solver("liar", &faults::Lie);
-  const auto rows = Run(R"("liar")", R"(, "terms": ["distance,curve_fairing/weight=1e-6"])");
+  const auto rows = Run(R"("liar")", R"(, "terms": ["distance,fairing/weight=1e-6/loss=huber"])");
   EXPECT_TRUE(rows.at(0)["verified"].is_null());
   EXPECT_THAT(rows[0]["findings"], ElementsAre("claim_fails"));
 }

@@ -192,7 +192,10 @@ TEST(Compare, VerifiesLossesAndConstraints) {
       VerifiedCell(R"("constraints": ["curvature/t=0.5/kappa=0.1"])", "augmented_lagrangian:lbfgs"),
       "in part");
   EXPECT_EQ(VerifiedCell(R"("terms": ["interpolation", "curve_fairing/weight=1e-6"])", "lbfgs"),
-            "-");
+            "yes");
+  EXPECT_EQ(
+      VerifiedCell(R"("terms": ["interpolation", "fairing/weight=1e-6/loss=huber"])", "lbfgs"),
+      "-");
 }
 
 TEST(Compare, MarksAClaimThatFailsItsAudit) {

@@ -268,20 +268,20 @@ TEST(ComparisonCsv, ReadsBackToTheSameValues) {
 
 TEST(ComparisonJson, ReadsBackToTheSameValues) {
   const ComparisonResult result = SomeResult();
-  const Json json = Json::parse(ComparisonJson(result));
-  EXPECT_EQ(json["format"], "batten.comparison/1");
-  EXPECT_EQ(json["mode"], "race");
-  EXPECT_EQ(json["disagreements"], Json({"rhino: gim is 0.1 away"}));
-  ASSERT_EQ(json["rows"].size(), 4u);
-  const Json& row = json["rows"][0];
+  const Json written = Json::parse(ComparisonJson(result));
+  EXPECT_EQ(written["format"], "batten.comparison/1");
+  EXPECT_EQ(written["mode"], "race");
+  EXPECT_EQ(written["disagreements"], Json({"rhino: gim is 0.1 away"}));
+  ASSERT_EQ(written["rows"].size(), 4u);
+  const Json& row = written["rows"][0];
   EXPECT_EQ(row["solve_seconds"].get<double>(), result.rows[0].solve_seconds);
   EXPECT_EQ(row["energy"].get<double>(), result.rows[0].run.energy);
   EXPECT_EQ(row["gap"].get<double>(), result.rows[0].gap);
   EXPECT_EQ(row["verified"], true);
-  EXPECT_EQ(json["rows"][1]["notes"][0]["name"], "spectral radius of I - A");
-  EXPECT_TRUE(json["rows"][2]["energy"].is_null());
-  EXPECT_TRUE(json["rows"][3]["gap"].is_null());
-  EXPECT_EQ(json["rows"][3]["verified"], false);
+  EXPECT_EQ(written["rows"][1]["notes"][0]["name"], "spectral radius of I - A");
+  EXPECT_TRUE(written["rows"][2]["energy"].is_null());
+  EXPECT_TRUE(written["rows"][3]["gap"].is_null());
+  EXPECT_EQ(written["rows"][3]["verified"], false);
 }
 
 TEST(ComparisonJsonLines, HasTheFieldsOfTheCsv) {
@@ -290,11 +290,11 @@ TEST(ComparisonJsonLines, HasTheFieldsOfTheCsv) {
   const auto header = ReadCsv(ComparisonCsv(result))[0];
   ASSERT_EQ(lines.size(), 4u);
   for (const std::string& line : lines) {
-    const auto json = nlohmann::ordered_json::parse(line);
+    const auto written = nlohmann::ordered_json::parse(line);
     std::vector<std::string> names;
-    for (const auto& [name, value] : json.items()) names.push_back(name);
+    for (const auto& [name, value] : written.items()) names.push_back(name);
     EXPECT_EQ(names, header);
-    EXPECT_EQ(json["format"], "batten.cell/1");
+    EXPECT_EQ(written["format"], "batten.cell/1");
   }
 }
 
