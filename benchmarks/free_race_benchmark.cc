@@ -157,7 +157,7 @@ std::vector<std::string> Outlines() {
 
 /// What one table is of.
 struct RaceSpec {
-  int control_points = 12;
+  int control_points = 0;
   int starts = 20;       // per outline
   double seconds = 0.4;  // most per run
   /// Disturbance of the best minimum that is known, in parts of its radius; 0: of a circle.
@@ -279,11 +279,11 @@ int main(int argc, char** argv) {
       "where both ends are polished to one curve (1e-6 of the size), and *times its time* is the "
       "median over pairs of the ratio of their times.\n",
       race.starts, race.seconds);
+  // With as few control points two runs from one start mostly end in one basin.
+  race.control_points = 8;
   race.near = 0.05;
-  for (const int control_points : {8, 12}) {
-    race.control_points = control_points;
-    batten::Race(race);
-  }
+  batten::Race(race);
+  race.control_points = 12;
   race.near = 0.0;
   batten::Race(race);
   return 0;
