@@ -55,8 +55,8 @@ Known Derivative(const AuditedFit& fit, int k, Real relative, const std::vector<
   Vector error = {};
   for (int c = 0; c < fit.dimension; ++c) {
     for (int j = 0; j <= fit.degree; ++j) {
-      const Real point = fit.control_points[static_cast<std::size_t>(
-          curve->ControlPoint(j) * fit.dimension + c)];
+      const Real point =
+          fit.control_points[static_cast<std::size_t>(curve->ControlPoint(j) * fit.dimension + c)];
       known.value[c] += known.row[j] * point;
       error[c] += AuditSums::kUnitRoundoff * (1 + relative) * known.sizes[j] *
                   (std::abs(point) + data_sizes[static_cast<std::size_t>(c)]);
@@ -107,7 +107,7 @@ class Bivector {
       }
       const Real s = speed_ * speed_;
       half[0][i] = -5.5L * radial + power_ * (2 * a_[i] * with_change_ + s * rc[i] -
-                                             3 * b_[i] * with_bend_ - 3 * along_ * rb[i]);
+                                              3 * b_[i] * with_bend_ - 3 * along_ * rb[i]);
       half[1][i] = power_ * (-3 * a_[i] * with_bend_ + 3 * along_ * ra[i]);
       half[2][i] = -power_ * s * ra[i];
     }
@@ -166,7 +166,7 @@ Bounds BoundsOf(bool variation, Real a, Real b, Real c) {
 
 /// factor * |R|^2 where the curve now is.
 void AddPlace(const AuditedFit& fit, bool variation, Real factor, Real relative,
-             const std::vector<Real>& data_sizes, AuditCurve* curve, AuditSums* sums) {
+              const std::vector<Real>& data_sizes, AuditCurve* curve, AuditSums* sums) {
   const int orders = variation ? 3 : 2;
   std::array<Known, 3> known;
   for (int k = 0; k < orders; ++k) {

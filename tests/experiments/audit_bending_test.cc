@@ -137,7 +137,8 @@ TEST(MeasureFit, AuditsCurveFairing) {
           "curve_fairing/weight=0.01/measure=variation/units=source"}) {
       SCOPED_TRACE(term + " " + std::to_string(dimension));
       const auto problem = Loop(dimension, ParameterKind::kFixed, "interpolation," + term);
-      for (const char* solver : {"lbfgs", "newton", "ceres_lm"}) ExpectBendingVerified(*problem, solver);
+      for (const char* solver : {"lbfgs", "newton", "ceres_lm"})
+        ExpectBendingVerified(*problem, solver);
     }
   }
 }
