@@ -24,6 +24,47 @@ template <typename Functor>
 struct AsksForOneDerivative<Functor, std::enable_if_t<Functor::kOnlyHighestDerivative>>
     : std::true_type {};
 
+/// The basis functions of one span, in the derivatives that the functor asks for; P as in
+/// FunctorKernel, Constant as in SpanBasis.
+template <typename Functor, int P, typename Constant>
+class SpanOfFunctor {
+ public:
+  static constexpr int kDerivatives = Functor::kDerivatives;
+  static constexpr bool kOneDerivative = kDerivatives > 0 && AsksForOneDerivative<Functor>::value;
+
+  SpanOfFunctor(const BsplineBasis& basis, int span)
+      : degree_(basis.degree()),
+        knots_(basis.knots().data()),
+        span_(span),
+        prepared_(degree_, knots_, span) {}
+
+  template <typename T>
+  inline __attribute__((always_inline)) void Evaluate(const T& t, T* values) const {
+    if constexpr (kOneDerivative) {
+      prepared_.Evaluate(t, values + kDerivatives * (degree() + 1));
+    } else if constexpr (kDerivatives == 0) {
+      prepared_.Evaluate(t, values);
+    } else {
+      EvaluateBasisDerivatives<P>(degree(), knots_, span_, t, kDerivatives, values);
+    }
+  }
+
+ private:
+  struct Nothing {
+    Nothing(int /*degree*/, const double* /*knots*/, int /*span*/) {}
+  };
+  using Prepared = std::conditional_t<
+      kDerivatives == 0, SpanBasis<P, Constant>,
+      std::conditional_t<kOneDerivative,
+                         SpanBasisDerivative<P, std::max(kDerivatives, 1), Constant>, Nothing>>;
+  int degree() const { return P >= 0 ? P : degree_; }
+
+  int degree_;
+  const double* knots_;
+  int span_;
+  Prepared prepared_;
+};
+
 /// The rows of an affine residual functor that are alike for all coordinates, read out of the
 /// functor, kRowPack sites at a time; P and D as in FunctorKernel.
 template <typename Functor, int P, int D>
@@ -56,6 +97,8 @@ class FunctorRows {
   template <typename PackType>
   using Form = AffineForm<PackType, kOrderStorage>;
   using PlainForm = AffineForm<double, kOrderStorage>;
+  template <typename PackType>
+  using Span = SpanOfFunctor<Functor, P, PackType>;
 
   int order() const { return kStatic ? P + 1 : basis_.order(); }
   int dimension() const { return kStatic ? D : setting_.dimension; }
@@ -86,7 +129,7 @@ class FunctorRows {
         continue;
       }
       lanes_in_use = kRowPack;
-      const SpanBasis<P, PackType> span_basis(basis_.degree(), basis_.knots().data(), group.span);
+      const Span<PackType> span(basis_, group.span);
       for (int begin = group.begin; begin < group.end; begin += kMaxRowsPerBlock) {
         RowBlock block;
         block.first_column = basis_.ControlPointIndex(group.span - basis_.degree());
@@ -95,7 +138,7 @@ class FunctorRows {
         double* const right_hand_sides = rows + order() * block.stride;
         block.coefficients = rows;
         block.right_hand_sides = right_hand_sides;
-        FillRows(span_basis, group.span, points, begin, block, root_factor, rows, right_hand_sides);
+        FillRows(span, points, begin, block, root_factor, rows, right_hand_sides);
         consumer->Consume(block);
       }
     }
@@ -114,18 +157,10 @@ class FunctorRows {
     block.right_hand_sides = rows + order() * kRowPack;
     Site<double, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
     site.set_variables(points);
+    const Span<double> span(basis_, group.span);
     for (int i = 0; i < block.num_rows; ++i) {
       const int item = sites_.item(group.begin + i);
-      const double t = sites_.parameters[item];
-      const double* const u = basis_.knots().data();
-      if constexpr (Functor::kDerivatives > 0 && AsksForOneDerivative<Functor>::value) {
-        EvaluateBasisDerivative<P, Functor::kDerivatives>(
-            basis_.degree(), u, group.span, t,
-            site.mutable_basis() + Functor::kDerivatives * order());
-      } else {
-        EvaluateBasisDerivatives<P>(basis_.degree(), u, group.span, t, Functor::kDerivatives,
-                                    site.mutable_basis());
-      }
+      span.Evaluate(sites_.parameters[item], site.mutable_basis());
       site.set_root_weight(sites_.weights == nullptr ? 1.0 : std::sqrt(sites_.weights[item]));
       PlainForm result;
       for (int c = 0; c < dimension(); ++c) {
@@ -151,13 +186,13 @@ class FunctorRows {
 
   /// Products with weights and factors that are 1 are left out when compiling, not when running.
   template <typename PackType>
-  void FillRows(const SpanBasis<P, PackType>& span_basis, int span,
-                const Form<PackType>* const* points, int begin, const RowBlock& block,
-                double root_factor, double* coefficients, double* right_hand_sides) const {
+  void FillRows(const Span<PackType>& span, const Form<PackType>* const* points, int begin,
+                const RowBlock& block, double root_factor, double* coefficients,
+                double* right_hand_sides) const {
     if (sites_.weights == nullptr) {
-      FillRowsWith<false>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+      FillRowsWith<false>(span, points, begin, block, coefficients, right_hand_sides);
     } else {
-      FillRowsWith<true>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+      FillRowsWith<true>(span, points, begin, block, coefficients, right_hand_sides);
     }
     if (root_factor == 1.0) return;
     for (int k = 0; k < order() * block.stride; ++k) coefficients[k] *= root_factor;
@@ -166,25 +201,29 @@ class FunctorRows {
 
   /// Flattened: with the basis and the functor called for each pack, rows cost twice as much.
   template <bool kWeighted>
-  __attribute__((flatten)) void FillRowsWith(const SpanBasis<P, Pack>& span_basis, int span,
+  __attribute__((flatten)) void FillRowsWith(const Span<Pack>& span,
                                              const Form<Pack>* const* points, int begin,
                                              const RowBlock& block, double* coefficients,
                                              double* right_hand_sides) const {
-    FillPacks<kWeighted>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+    FillPacks<kWeighted>(span, points, begin, block, coefficients, right_hand_sides);
   }
 #if BATTEN_HAS_AVX2_KERNELS
   template <bool kWeighted>
-  __attribute__((flatten, target("avx2"))) void FillRowsWith(
-      const SpanBasis<P, WidePack>& span_basis, int span, const Form<WidePack>* const* points,
-      int begin, const RowBlock& block, double* coefficients, double* right_hand_sides) const {
-    FillPacks<kWeighted>(span_basis, span, points, begin, block, coefficients, right_hand_sides);
+  __attribute__((flatten, target("avx2"))) void FillRowsWith(const Span<WidePack>& span,
+                                                             const Form<WidePack>* const* points,
+                                                             int begin, const RowBlock& block,
+                                                             double* coefficients,
+                                                             double* right_hand_sides) const {
+    FillPacks<kWeighted>(span, points, begin, block, coefficients, right_hand_sides);
   }
 #endif
 
   template <bool kWeighted, typename PackType>
-  inline __attribute__((always_inline)) void FillPacks(
-      const SpanBasis<P, PackType>& span_basis, int span, const Form<PackType>* const* points,
-      int begin, const RowBlock& block, double* coefficients, double* right_hand_sides) const {
+  inline __attribute__((always_inline)) void FillPacks(const Span<PackType>& span,
+                                                       const Form<PackType>* const* points,
+                                                       int begin, const RowBlock& block,
+                                                       double* coefficients,
+                                                       double* right_hand_sides) const {
     // Read once: what is written in between could be the same numbers, as far as compilers know.
     PackType origin[kDimensionStorage];
     for (int c = 0; c < dimension(); ++c) origin[c] = PackType(setting_.Origin(sites_, c));
@@ -193,13 +232,13 @@ class FunctorRows {
     const int in_a_row = sites_.order.empty() ? block.num_rows / kRowPack * kRowPack : 0;
     for (int first = 0; first < in_a_row; first += kRowPack) {
       Prefetch(begin + first);
-      FillPack<true, kWeighted>(span_basis, span, points, begin + first, 0, origin, scale,
-                                block.stride, coefficients + first, right_hand_sides + first);
+      FillPack<true, kWeighted>(span, points, begin + first, 0, origin, scale, block.stride,
+                                coefficients + first, right_hand_sides + first);
     }
     for (int first = in_a_row; first < block.stride; first += kRowPack) {
-      FillPack<false, kWeighted>(span_basis, span, points, begin + first,
-                                 begin + block.num_rows - 1, origin, scale, block.stride,
-                                 coefficients + first, right_hand_sides + first);
+      FillPack<false, kWeighted>(span, points, begin + first, begin + block.num_rows - 1, origin,
+                                 scale, block.stride, coefficients + first,
+                                 right_hand_sides + first);
     }
     for (int i = block.num_rows; i < block.stride; ++i) {
       for (int j = 0; j < order(); ++j) coefficients[j * block.stride + i] = 0.0;
@@ -232,24 +271,15 @@ class FunctorRows {
   /// The rows of kRowPack sites. Coordinate by coordinate the functor sees a curve with one
   /// coordinate, whose control point j is the variable x_j.
   template <bool kInARow, bool kWeighted, typename PackType>
-  inline __attribute__((always_inline)) void FillPack(const SpanBasis<P, PackType>& span_basis,
-                                                      int span, const Form<PackType>* const* points,
+  inline __attribute__((always_inline)) void FillPack(const Span<PackType>& span,
+                                                      const Form<PackType>* const* points,
                                                       int first, int last, const PackType* origin,
                                                       const PackType& scale, int stride,
                                                       double* coefficients,
                                                       double* right_hand_sides) const {
     Site<PackType, P, kStatic ? 1 : -1, Functor::kDerivatives> site(basis_.degree(), 1);
     const auto t = Collect<PackType, kInARow>(sites_.parameters, 1, first, last);
-    if constexpr (Functor::kDerivatives == 0) {
-      span_basis.Evaluate(t, site.mutable_basis());
-    } else if constexpr (AsksForOneDerivative<Functor>::value) {
-      EvaluateBasisDerivative<P, Functor::kDerivatives>(
-          basis_.degree(), basis_.knots().data(), span, t,
-          site.mutable_basis() + Functor::kDerivatives * order());
-    } else {
-      EvaluateBasisDerivatives<P>(basis_.degree(), basis_.knots().data(), span, t,
-                                  Functor::kDerivatives, site.mutable_basis());
-    }
+    span.Evaluate(t, site.mutable_basis());
     PackType root(1.0);
     if constexpr (kWeighted) {
       root = Collect<PackType, kInARow>(sites_.weights, 1, first, last);

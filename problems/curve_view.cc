@@ -1,5 +1,7 @@
 #include "problems/curve_view.h"
 
+#include <utility>
+
 #include "problems/fit_problem.h"
 #include "splines/interleaved_rows.h"
 
@@ -75,6 +77,12 @@ const NormalBand& CurveView::normal_band(int threads) const {
     }
   }
   return *band_;
+}
+
+NormalBand CurveView::TakeNormalBand(int threads) const {
+  normal_band(threads);
+  const std::unique_ptr<NormalBand> taken = std::move(band_);
+  return std::move(*taken);
 }
 
 Status CurveView::Residuals(const Eigen::VectorXd& x, Points* residuals) {

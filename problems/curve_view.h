@@ -35,6 +35,8 @@ class CurveView {
   const BandedRows& rows() const;
   /// A'A and A'Q, summed at the first call in one stream over the rows, which `threads` share.
   const NormalBand& normal_band(int threads = 1) const;
+  /// The same for the caller alone, who may overwrite it: whoever asks again has it summed again.
+  NormalBand TakeNormalBand(int threads) const;
 
   /// residuals = Q - A P, m x d in row order. Counts one product.
   Status Residuals(const Eigen::VectorXd& x, Points* residuals);
@@ -57,7 +59,7 @@ class CurveView {
   EvaluationMonitor* monitor_;
   std::vector<const RowSource*> sources_;
   mutable std::unique_ptr<const BandedRows> rows_;
-  mutable std::unique_ptr<const NormalBand> band_;
+  mutable std::unique_ptr<NormalBand> band_;
 };
 
 }  // namespace batten

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "splines/banded_cholesky.h"
 #include "splines/nearest_solution.h"
@@ -21,26 +22,26 @@ SolverInfo BandedCholeskySolver::ClassInfo() {
 
 Outcome BandedCholeskySolver::SolveRows(const CurveView& view, const Problem& /*problem*/,
                                         RunContext* context, Eigen::VectorXd* x) const {
-  const NormalBand& band = view.normal_band(context->threads());
+  NormalBand band = view.TakeNormalBand(context->threads());
   // Forward error of normal equations: at most about the condition number of N times eps (Higham,
   // Accuracy and Stability, sec. 20.4). 1e-8 of the data's size is what the solvers are to agree
   // to; where no digit is sure, the normal equations are not the way.
   constexpr double kDigitsLost = 1e-8;
   constexpr double kNoDigit = 0.1;
+  // For the difference from the start: what the start has right loses no digits.
+  LargeArray step(static_cast<std::size_t>(x->size()));
+  band.NormalResidual(x->data(), step.data());
   BandedCholesky factor;
   std::string message;
   double condition = std::numeric_limits<double>::infinity();
-  if (factor.Factor(band)) {
+  if (factor.Factor(std::move(band))) {
     condition = factor.ConditionEstimate();
     context->Note("condition of the normal equations", NumberText(condition));
   }
   const double error = condition * std::numeric_limits<double>::epsilon();
   if (error < kNoDigit) {
-    // For the difference from the start: what the start has right loses no digits.
-    Eigen::VectorXd step(x->size());
-    band.NormalResidual(x->data(), step.data());
     factor.Solve(step.data(), view.dimension());
-    *x += step;
+    *x += Eigen::Map<const Eigen::VectorXd>(step.data(), x->size());
     if (error > kDigitsLost) {
       message = "the normal equations have condition " + NumberText(condition) + ": only " +
                 std::to_string(static_cast<int>(-std::log10(error))) +

@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 /* Raised whenever an interface that plugins see changes. */
-#define BATTEN_API_LEVEL 6
+#define BATTEN_API_LEVEL 7
 
 /* What must be the same on both sides. Of a plugin in C the fields after `interface` are 0. */
 typedef struct batten_card {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "splines/row_pack.h"
 
@@ -97,7 +98,15 @@ auto ZeroScratch([[maybe_unused]] int size) {
 
 }  // namespace
 
-bool BandedCholesky::Factor(const NormalBand& matrix) {
+bool BandedCholesky::Factor(const NormalBand& matrix) { return FactorInto(matrix, &factor_); }
+
+bool BandedCholesky::Factor(NormalBand&& matrix) {
+  const bool factored = FactorInto(matrix, &matrix.band());
+  factor_ = std::move(matrix.band());
+  return factored;
+}
+
+bool BandedCholesky::FactorInto(const NormalBand& matrix, LargeArray* factor) {
   n_ = matrix.size();
   width_ = matrix.width();
   norm_ = 0.0;
@@ -110,10 +119,11 @@ bool BandedCholesky::Factor(const NormalBand& matrix) {
   num_swept_ = n_ - dense_size;
   MeasureMatrix(matrix, dense_size);
   FirstPending(matrix.band(), &pending_);
-  factor_.resize(static_cast<std::size_t>(num_swept_) * width_);
+  if (factor != &matrix.band()) factor->resize(static_cast<std::size_t>(num_swept_) * width_);
   border_.resize(static_cast<std::size_t>(num_swept_) * num_border_);
-  const bool swept = WithFixedShape(
-      width_, 1, [&](auto width, auto) { return Sweep<width>(matrix.band(), &pending_); });
+  const bool swept = WithFixedShape(width_, 1, [&](auto width, auto) {
+    return Sweep<width>(matrix.band().data(), factor->data(), &pending_);
+  });
   if (!swept) return false;
   FillDense(matrix, pending_);
   return FactorDense(dense_size, limits_.data(), dense_.data());
@@ -123,12 +133,10 @@ void BandedCholesky::MeasureMatrix(const NormalBand& matrix, int dense_size) {
   norm_ = matrix.LargestRowSum();
   if (matrix.cyclic() && num_border_ == 0) {
     limits_ = matrix.Diagonal();
-    largest_diagonal_ = 0.0;
-    for (const double entry : limits_) largest_diagonal_ = std::max(largest_diagonal_, entry);
   } else {
     const Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>> diagonal(
         matrix.band().data(), n_, Eigen::InnerStride<>(width_));
-    largest_diagonal_ = n_ > 0 ? std::max(0.0, diagonal.maxCoeff()) : 0.0;
+    largest_diagonal_ = num_border_ > 0 ? std::max(0.0, diagonal.maxCoeff()) : 0.0;
     const auto last = diagonal.tail(dense_size);
     limits_.assign(last.begin(), last.end());
   }
@@ -182,7 +190,7 @@ template <int kWidth>
 // Loops over the window are unrolled by order: its entries then are registers, while an array in
 // memory would be written in other pieces than it is read, which stalls.
 template <int kWidth>
-bool BandedCholesky::Sweep(const LargeArray& band, Pending* pending) {
+bool BandedCholesky::Sweep(const double* band, double* factor, Pending* pending) {
   const int width = kWidth > 0 ? kWidth : width_;
   // What is left of rows j.., row i from its diagonal to column j + width - 1; the first of them.
   auto window = ZeroScratch < kWidth < 0 ? -1 : kWidth * kWidth > (width * width);
@@ -195,8 +203,8 @@ bool BandedCholesky::Sweep(const LargeArray& band, Pending* pending) {
   bool bordered = num_border_ > 0;
   const double pivot_tolerance = n_ * kEpsilon;
   for (int j = 0; j < num_swept_; ++j) {
-    const double* entry = band.data() + static_cast<std::size_t>(j) * width;
-    double* u = factor_.data() + static_cast<std::size_t>(j) * width;
+    const double* entry = band + static_cast<std::size_t>(j) * width;
+    double* u = factor + static_cast<std::size_t>(j) * width;
 #pragma GCC unroll 8
     for (int i = 0; i < width; ++i) {
       window[i * width + width - 1 - i] = entry[i * width + width - 1 - i];
@@ -309,54 +317,6 @@ void BandedCholesky::Solve(double* x, int dimension) const {
   WithFixedShape(width_, dimension, [&](auto width, auto fixed_dimension) {
     SolveBand<width, fixed_dimension>(x, dimension);
   });
-}
-
-double BandedCholesky::ConditionEstimate() const {
-  if (n_ == 0) return 1.0;
-  // Hager 1984 with Higham's changes of 1988: ||N^-1||_1 is the maximum of the convex function
-  // ||N^-1 x||_1 over the unit ball, climbed from corner to corner. Higham's last vector, of
-  // alternating signs, is solved for beside the first one: a solve waits for its own results.
-  LargeArray memory(2 * static_cast<std::size_t>(n_));
-  Eigen::Map<Points> pair(memory.data(), n_, 2);
-  const double share = 1.0 / n_;
-  const double slope = 1.0 / std::max(n_ - 1, 1);
-  for (int i = 0; i < n_; ++i) {
-    pair(i, 0) = share;
-    pair(i, 1) = (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + slope * i);
-  }
-  Solve(pair.data(), 2);
-  const double alternating = pair.col(1).lpNorm<1>();
-  // In the memory of the pair, which is not asked for again.
-  for (int i = 0; i < n_; ++i) pair.data()[i] = pair(i, 0);
-  Eigen::Map<Eigen::VectorXd> x(pair.data(), n_);
-  double estimate = 0.0;
-  int corner = -1;
-  std::vector<signed char> sign(static_cast<std::size_t>(n_), 0);
-  for (int step = 0; step < 5; ++step) {
-    if (step > 0) Solve(x.data(), 1);
-    const double norm = x.lpNorm<1>();
-    if (step > 0 && !(norm > estimate)) break;
-    estimate = norm;
-    int changes = 0;
-    for (int i = 0; i < n_; ++i) {
-      const auto now = static_cast<signed char>(x[i] >= 0.0 ? 1 : -1);
-      changes |= now ^ sign[static_cast<std::size_t>(i)];
-      sign[static_cast<std::size_t>(i)] = now;
-      x[i] = now;
-    }
-    if (changes == 0) break;
-    Solve(x.data(), 1);
-    const double largest = x.lpNorm<Eigen::Infinity>();
-    if (corner >= 0 && std::abs(x[corner]) == largest) break;
-    const auto is_largest = [largest](double value) { return std::abs(value) == largest; };
-    corner = static_cast<int>(std::find_if(x.begin(), x.end(), is_largest) - x.begin());
-    if (corner == n_) break;  // not a number
-    // A unit vector on a background that keeps the decaying solution away from denormals.
-    x.setConstant(1e-30);
-    x[corner] = 1.0;
-  }
-  estimate = std::max(estimate, 2.0 * alternating / (3.0 * n_));
-  return std::max(1.0, norm_ * estimate);
 }
 
 }  // namespace batten

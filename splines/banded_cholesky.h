@@ -17,6 +17,8 @@ class BandedCholesky {
   /// False if a pivot is not above n * eps * (its diagonal entry) or not finite: N is singular to
   /// working precision, nothing can be solved.
   bool Factor(const NormalBand& matrix);
+  /// The same in the memory of the matrix, which is lost.
+  bool Factor(NormalBand&& matrix);
   /// x = N^-1 x, n x d row-major.
   void Solve(double* x, int dimension) const;
   /// Estimated ||N||_1 ||N^-1||_1 (Hager's and Higham's estimator), at least 1.
@@ -31,11 +33,14 @@ class BandedCholesky {
     std::vector<double> corner;  // border x border
   };
   void FirstPending(const LargeArray& band, Pending* first) const;
+  /// Factor() into `factor`, num_swept x width or more: factor_'s memory or the band's own.
+  bool FactorInto(const NormalBand& matrix, LargeArray* factor);
   /// Of the matrix: what pivots are held against, and the norm.
   void MeasureMatrix(const NormalBand& matrix, int dense_size);
-  /// Eliminates columns 0..num_swept_ - 1. kWidth < 0: any width. False as Factor().
+  /// Eliminates columns 0..num_swept_ - 1 into `factor`, which may be the band. kWidth < 0: any
+  /// width. False as Factor().
   template <int kWidth>
-  bool Sweep(const LargeArray& band, Pending* pending);
+  bool Sweep(const double* band, double* factor, Pending* pending);
   /// The border's part of column j, whose row of the factor is u. False once the fill is zero.
   template <int kWidth>
   bool SweepBorder(int j, const double* u, Pending* pending);
@@ -54,10 +59,10 @@ class BandedCholesky {
   int num_border_ = 0;    // width - 1 if cyclic without overlap
   int num_bordered_ = 0;  // rows with fill in the border
   double norm_ = 0.0;
-  double largest_diagonal_ = 0.0;
-  LargeArray factor_;          // num_swept_ x width: 1 / D_jj, U(j, j + 1), ...
-  LargeArray border_;          // as many rows x num_border_: U(j, n - num_border_ + b)
-  std::vector<double> dense_;  // upper triangle, row-major, 1 / D on its diagonal
+  double largest_diagonal_ = 0.0;  // with a border only
+  LargeArray factor_;              // num_swept_ x width or more: 1 / D_jj, U(j, j + 1), ...
+  LargeArray border_;              // as many rows x num_border_: U(j, n - num_border_ + b)
+  std::vector<double> dense_;      // upper triangle, row-major, 1 / D on its diagonal
   // Of Factor alone, kept for the next one.
   Pending pending_;
   std::vector<double> limits_;

@@ -2,7 +2,6 @@
 #define BATTEN_SPLINES_BANDED_ROWS_H_
 
 #include <Eigen/SparseCore>
-#include <memory>
 #include <vector>
 
 #include "splines/large_array.h"
@@ -17,6 +16,11 @@ class BandedRows : public RowSource {
   /// Copies the rows of all sources (same num_columns, dimension and cyclic; widths may differ,
   /// narrower rows are padded), ordered by first_column, equal ones in the order of the sources.
   explicit BandedRows(const std::vector<const RowSource*>& sources);
+  // Rows of a large fit fill hundreds of megabytes: they are moved, never copied by accident.
+  BandedRows(BandedRows&&) = default;
+  BandedRows& operator=(BandedRows&&) = default;
+  BandedRows(const BandedRows&) = delete;
+  BandedRows& operator=(const BandedRows&) = delete;
 
   RowShape shape() const override { return shape_; }
   void Stream(RowConsumer* consumer) const override;

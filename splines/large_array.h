@@ -1,6 +1,7 @@
 #ifndef BATTEN_SPLINES_LARGE_ARRAY_H_
 #define BATTEN_SPLINES_LARGE_ARRAY_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -10,10 +11,15 @@ namespace batten {
 
 constexpr std::size_t kCacheLine = 64;  // bytes
 
-/// Memory aligned to a cache line, not initialised; throws std::bad_alloc. Large blocks ask for
-/// huge pages: the first touch of small ones takes longer than a pass of arithmetic over them.
+/// Blocks of at least so many bytes are the system's own pages.
+constexpr std::size_t kLargeBytes = 4 << 20;
+
+/// Memory aligned to a cache line, not initialised; throws std::bad_alloc. Large blocks are all
+/// zero and ask for huge pages: the first touch of small ones takes longer than a pass of
+/// arithmetic over them.
 void* AllocateLarge(std::size_t bytes);
-void FreeLarge(void* data) noexcept;
+/// `bytes` as they were asked for.
+void FreeLarge(void* data, std::size_t bytes) noexcept;
 
 /// Allocator over AllocateLarge() whose vectors leave new entries uninitialised unless a value is
 /// given: `resize(n)` writes nothing, `assign(n, 0.0)` does.
@@ -25,7 +31,7 @@ class LargeAllocator {
   template <typename U>
   LargeAllocator(const LargeAllocator<U>& /*other*/) {}  // NOLINT(google-explicit-constructor)
   T* allocate(std::size_t n) { return static_cast<T*>(AllocateLarge(n * sizeof(T))); }
-  void deallocate(T* data, std::size_t /*n*/) noexcept { FreeLarge(data); }
+  void deallocate(T* data, std::size_t n) noexcept { FreeLarge(data, n * sizeof(T)); }
   template <typename U, typename... Args>
   void construct(U* at, Args&&... args) {
     if constexpr (sizeof...(Args) == 0) {
@@ -39,6 +45,13 @@ class LargeAllocator {
 };
 
 using LargeArray = std::vector<double, LargeAllocator<double>>;
+
+/// `size` zeros; what the system has just cleared is not cleared again.
+inline LargeArray LargeZeros(std::size_t size) {
+  LargeArray zeros(size);
+  if (size * sizeof(double) < kLargeBytes) std::fill(zeros.begin(), zeros.end(), 0.0);
+  return zeros;
+}
 
 }  // namespace batten
 

@@ -10,8 +10,8 @@
 namespace batten {
 NormalBand::NormalBand(const RowShape& shape)
     : shape_(shape),
-      band_(static_cast<std::size_t>(shape.num_columns) * shape.width, 0.0),
-      right_hand_side_(Points::Zero(shape.num_columns, shape.dimension)),
+      band_(LargeZeros(static_cast<std::size_t>(shape.num_columns) * shape.width)),
+      right_hand_side_(LargeZeros(static_cast<std::size_t>(shape.num_columns) * shape.dimension)),
       scratch_(shape) {}
 
 void NormalBand::Add(const RowBlock& block, Scratch* scratch) {
@@ -35,10 +35,12 @@ template <int kWidth, int kDimension, int kRows>
 void NormalBand::AddFew(const RowBlock& block, Scratch* scratch) {
   double row[kRows][kWidth];
   double data[kRows][kDimension];
+  bool has_data = false;  // fairing has none
   for (int i = 0; i < kRows; ++i) {
     for (int j = 0; j < kWidth; ++j) row[i][j] = block.coefficients[j * kRowPack + i];
     for (int c = 0; c < kDimension; ++c) {
       data[i][c] = block.right_hand_sides[c * kRowPack + i];
+      has_data = has_data || data[i][c] != 0.0;
       scratch->squared_norm_of_data += data[i][c] * data[i][c];
     }
   }
@@ -50,6 +52,7 @@ void NormalBand::AddFew(const RowBlock& block, Scratch* scratch) {
       for (int i = 1; i < kRows; ++i) sum += row[i][j] * row[i][j + k];
       target[k] += sum;
     }
+    if (!has_data) continue;
     double* const right = right_hand_side_.data() + column * kDimension;
     for (int c = 0; c < kDimension; ++c) {
       double sum = row[0][j] * data[0][c];

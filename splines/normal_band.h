@@ -30,7 +30,9 @@ class NormalBand : public RowConsumer {
   bool cyclic() const { return shape_.cyclic; }
   const LargeArray& band() const { return band_; }
   LargeArray& band() { return band_; }
-  const Points& right_hand_side() const { return right_hand_side_; }             // B, n x d
+  Eigen::Map<const Points> right_hand_side() const {  // B, n x d
+    return {right_hand_side_.data(), size(), dimension()};
+  }
   double squared_norm_of_data() const { return scratch_.squared_norm_of_data; }  // ||Q||^2
 
   /// product = N V, n x d row-major each; must not overlap.
@@ -85,7 +87,7 @@ class NormalBand : public RowConsumer {
 
   RowShape shape_;
   LargeArray band_;
-  Points right_hand_side_;
+  LargeArray right_hand_side_;
   Scratch scratch_;
 };
 

@@ -133,6 +133,15 @@ TEST_P(CompiledAndNot, CurveViewMultipliesByTheRows) {
   EXPECT_LT((-2.0 * normal - gradient).norm(), Roundings(gradient.norm()));
 }
 
+TEST_P(CompiledAndNot, CurveViewSumsATakenBandAgain) {
+  CurveView& view = *compiled_.curve_view();
+  const LargeArray band = view.normal_band().band();
+  NormalBand taken = view.TakeNormalBand(1);
+  EXPECT_EQ(taken.band(), band);
+  std::fill(taken.band().begin(), taken.band().end(), 7.0);
+  EXPECT_EQ(view.normal_band().band(), band);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Fits, CompiledAndNot,
     ::testing::Values(ObjectiveCase{3, true, 2, "interpolation", false},

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tests/splines/row_testing.h"
 
@@ -144,6 +145,27 @@ TEST(BandedCholesky, MayBeEmpty) {
   factor.Solve(nullptr, 2);
   EXPECT_EQ(factor.ConditionEstimate(), 1);
   EXPECT_FALSE(factor.Factor(NormalBand::FromRows(ListedRows(3, 0, 1, false))));
+}
+
+TEST(BandedCholesky, FactorsInTheMemoryOfTheMatrixToo) {
+  for (const bool cyclic : {false, true}) {
+    for (const int n : {3, 7, 300}) {
+      const NormalBand band = Tridiagonal(n, 4, cyclic, 4, 1);
+      NormalBand lost = band;
+      BandedCholesky factor;
+      BandedCholesky same;
+      ASSERT_TRUE(factor.Factor(band));
+      ASSERT_TRUE(same.Factor(std::move(lost)));
+      const Points right = RandomPoints(n, 2, 11);
+      Points x = right;
+      Points y = right;
+      factor.Solve(x.data(), 2);
+      same.Solve(y.data(), 2);
+      EXPECT_EQ(x, y);
+      EXPECT_EQ(factor.ConditionEstimate(), same.ConditionEstimate());
+      EXPECT_LE(ErrorOfSolution(band, same, right), 8 * 4 * kEpsilon * 3);
+    }
+  }
 }
 
 TEST(BandedCholesky, CanBeUsedAgain) {

@@ -15,7 +15,7 @@ void ExpectOneRowOfAll(const BsplineBasis& basis, std::mt19937* random) {
     double all[4 * kMaxOrder];
     double one[kMaxOrder];
     EvaluateBasisDerivatives(p, basis.knots().data(), span, t, 3, all);
-    EvaluateBasisDerivative<kDegree, kDerivative>(p, basis.knots().data(), span, t, one);
+    SpanBasisDerivative<kDegree, kDerivative>(p, basis.knots().data(), span).Evaluate(t, one);
     for (int j = 0; j <= p; ++j) {
       const double expected = all[kDerivative * (p + 1) + j];
       // Fixed loops may be contracted otherwise.
