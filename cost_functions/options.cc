@@ -7,6 +7,7 @@
 #include <charconv>
 #include <climits>
 #include <cmath>
+#include <stdexcept>
 #include <system_error>
 
 namespace batten {
@@ -140,6 +141,19 @@ class SpecParser {
   size_t position_ = 0;
 };
 
+[[noreturn]] void ThrowNoOption(const std::string& name, const std::vector<std::string>& known) {
+  const std::string nearest = NearestName(name, known);
+  throw std::logic_error("asks for an option " + name + " that it has not declared" +
+                         (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+}
+
+template <typename Value>
+[[noreturn]] void ThrowNoOption(const std::string& name, const std::map<std::string, Value>& has) {
+  std::vector<std::string> known;
+  for (const auto& [option, value] : has) known.push_back(option);
+  ThrowNoOption(name, known);
+}
+
 }  // namespace
 
 // A default outside its own range could be written but not read back: hence the checks.
@@ -178,6 +192,38 @@ std::string OptionInfo::DefaultText() const {
   return kind == Kind::kWord ? default_word : NumberText(default_number);
 }
 
+bool IsSpecName(const std::string& text) {
+  NameSpec spec;
+  std::string error;
+  return ParseNameSpec(text, &spec, &error) && spec.options.empty() && spec.wrapped == nullptr;
+}
+
+std::string WhyNoOptionList(const std::vector<OptionInfo>& infos) {
+  constexpr std::size_t kLongest = 60;
+  const auto is_value = [](const std::string& word) {
+    NameSpec spec;
+    std::string error;
+    return ParseNameSpec("name/option=" + word, &spec, &error) && spec.options.size() == 1 &&
+           spec.options.front().second == word && spec.wrapped == nullptr;
+  };
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const OptionInfo& info = infos[i];
+    if (!IsSpecName(info.name)) {
+      return "has an option named " + Quoted(info.name, kLongest) +
+             "; allowed: letters, digits, _ and -";
+    }
+    for (const std::string& word : info.words) {
+      if (is_value(word)) continue;
+      return "has an option " + info.name + " with the word " + Quoted(word, kLongest) +
+             "; allowed: letters, digits, _, -, . and +";
+    }
+    for (std::size_t before = 0; before < i; ++before) {
+      if (infos[before].name == info.name) return "has two options named " + info.name;
+    }
+  }
+  return "";
+}
+
 OptionValues::OptionValues(const std::vector<OptionInfo>& infos) {
   for (const OptionInfo& info : infos) {
     if (info.kind == OptionInfo::Kind::kWord) SetWord(info.name, info.default_word);
@@ -187,7 +233,7 @@ OptionValues::OptionValues(const std::vector<OptionInfo>& infos) {
 
 double OptionValues::Real(const std::string& name) const {
   const auto found = numbers_.find(name);
-  CHECK(found != numbers_.end()) << "no number option " << name;
+  if (found == numbers_.end()) ThrowNoOption(name, numbers_);
   return found->second;
 }
 
@@ -200,7 +246,7 @@ int OptionValues::Integer(const std::string& name) const {
 
 const std::string& OptionValues::Word(const std::string& name) const {
   const auto found = words_.find(name);
-  CHECK(found != words_.end()) << "no word option " << name;
+  if (found == words_.end()) ThrowNoOption(name, words_);
   return found->second;
 }
 
@@ -256,6 +302,11 @@ bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
   }
   *values = std::move(resolved);
   return true;
+}
+
+bool AreNear(const std::string& a, const std::string& b) {
+  return 3 * EditDistance(LowerCase(a), LowerCase(b)) <=
+         static_cast<int>(std::max(a.size(), b.size()));
 }
 
 std::string NearestName(const std::string& name, const std::vector<std::string>& known) {

@@ -33,12 +33,19 @@ struct OptionInfo {
   std::string DefaultText() const;
 };
 
+/// Whether it is a name of the grammar below.
+bool IsSpecName(const std::string& text);
+/// Empty, or what is wrong with a list of options, as a sentence's end: "has two options named x".
+std::string WhyNoOptionList(const std::vector<OptionInfo>& infos);
+
 /// Checked values for a list of OptionInfo.
 class OptionValues {
  public:
   OptionValues() = default;
   explicit OptionValues(const std::vector<OptionInfo>& infos);  ///< All defaults.
-  double Real(const std::string& name) const;  // a name that is not there is our bug: CHECK
+  /// A name that is not there, or of another kind, throws std::logic_error: whoever asks has not
+  /// declared it.
+  double Real(const std::string& name) const;
   int Integer(const std::string& name) const;
   const std::string& Word(const std::string& name) const;
   void SetNumber(const std::string& name, double value) { numbers_[name] = value; }
@@ -74,6 +81,8 @@ bool ResolveOptions(const std::vector<OptionInfo>& infos, const NameSpec& spec,
 /// The entry of `known` with the smallest edit distance, whatever the case of letters (the first of
 /// equals); empty for none.
 std::string NearestName(const std::string& name, const std::vector<std::string>& known);
+/// Whether one could be a slip of the other: at most a third of the longer one's letters differ.
+bool AreNear(const std::string& a, const std::string& b);
 /// `unknown solver "lbgfs"; did you mean lbfgs? known: cg, gim, lbfgs`
 std::string UnknownNameMessage(const std::string& kind, const std::string& name,
                                const std::vector<std::string>& known);

@@ -37,6 +37,10 @@ class Term {
 };
 
 /// All registered terms, by name; built-in ones come from the table in term_registry.cc.
+/// term.MakeFamily(); what it throws, but for want of memory, is its error.
+std::unique_ptr<BlockFamily> MakeFamilyOf(const Term& term, const FitSetting& setting,
+                                          const OptionValues& options, std::string* error);
+
 class TermRegistry {
  public:
   static TermRegistry& Global();

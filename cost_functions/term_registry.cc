@@ -1,6 +1,8 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <exception>
+#include <new>
 
 #include "cost_functions/curve_fairing.h"
 #include "cost_functions/end_condition.h"
@@ -29,6 +31,20 @@ std::vector<OptionInfo> CommonTermOptions() {
                            "residual size at which the loss departs from the square, in units of "
                            "the longest side of the data's box; mad: estimated from the residuals "
                            "of Huber's fit before the run")};
+}
+
+std::unique_ptr<BlockFamily> MakeFamilyOf(const Term& term, const FitSetting& setting,
+                                          const OptionValues& options, std::string* error) {
+  try {
+    return term.MakeFamily(setting, options, error);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& exception) {
+    constexpr std::size_t kLongest = 300;
+    *error = "term " + term.Info().name +
+             " threw an exception while it was made: " + Quoted(exception.what(), kLongest);
+    return nullptr;
+  }
 }
 
 TermRegistry& TermRegistry::Global() {

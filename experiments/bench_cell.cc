@@ -223,6 +223,7 @@ std::string RunBenchCell(const BenchSuite& suite, const BenchCell& cell,
   Json json = CellJson(row, direct.minimum_energy(), spec);
   AddPlace(suite, cell, EffectiveIdentity(row.run), &json);
   AddTruthChecks(row, spec, &json);
+  AllowLargeFiles();
   const std::string not_written = WriteRecords(*problem, row.run, records, &json);
   if (!not_written.empty()) return kCannotWrite + not_written;
   const std::string disagreement = Disagreement(direct, spec, row);

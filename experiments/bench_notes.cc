@@ -111,8 +111,15 @@ void NoteRuns(BenchResults* results) {
       if (!reached && stop != "skipped") results->some_failed = true;
     }
     if (run.repetitions_differ) {
+      const auto cut =
+          std::count_if(run.rows.begin(), run.rows.end(), [](const nlohmann::json* row) {
+            return TextAt(*row, "stop") == ToString(StopReason::kTimeLimit);
+          });
+      const std::string by_time = cut == 0 ? ""
+                                           : ", as the time limit ended " + std::to_string(cut) +
+                                                 " of " + std::to_string(run.rows.size());
       results->notes.push_back(PlaceOf(*results, run) +
-                               ": its repetitions differ in more than time");
+                               ": its repetitions differ in more than time" + by_time);
     }
   }
 }

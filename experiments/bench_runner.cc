@@ -33,7 +33,9 @@ BenchRunner::BenchRunner(const BenchSuite& suite, std::vector<BenchCell> cells, 
 }
 
 BenchRecords BenchRunner::RecordsOf(std::size_t cell) const {
-  return folder_.records(keys_[cell], InstanceKey(suite_, cells_[cell]));
+  // Absolute: a solver may leave its cell's process in another folder.
+  const BenchFolder folder{std::filesystem::absolute(folder_.path)};
+  return folder.records(keys_[cell], InstanceKey(suite_, cells_[cell]));
 }
 
 void BenchRunner::TakeOver(const std::string& line) {

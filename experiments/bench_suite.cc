@@ -9,6 +9,7 @@
 
 #include "experiments/bench_matrix.h"
 #include "experiments/bench_problem.h"
+#include "experiments/plugin_faults.h"
 #include "problems/strict_json.h"
 #include "solvers/plugin_loader.h"
 
@@ -179,7 +180,12 @@ bool TryProblems(const StrictObject& file, const BenchSuite& suite) {
         seeds.start = suite.seeds.start.front();
       }
       std::string why;
-      if (MakeBenchProblem(problem, suite.terms[t], seeds, &why) != nullptr) continue;
+      const auto make = [&] { return MakeBenchProblem(problem, suite.terms[t], seeds, &why); };
+      const std::string end = HasTermOfPlugin(TermsOf(problem, suite.terms[t]))
+                                  ? WhyNoReturn([&make] { make(); })
+                                  : std::string();
+      if (end.empty() && make() != nullptr) continue;
+      if (!end.empty()) why = "a term of a plugin " + end + " while the problem is made";
       const std::string with =
           suite.terms.size() > 1 ? " with terms " + suite.terms[t].label : std::string();
       return file.Complain(problem.place.substr(1), problem.label + with + ": " + why);

@@ -84,11 +84,7 @@ bool ReadDataProblem(const StrictObject& object, const std::string& suite_path,
   entry->data_path = FindDataFile(file, suite_path);
   entry->path = suite_path;
   if (!entry->data_path.empty()) return true;
-  std::string folders;
-  for (const std::string& folder : DataFolders(suite_path)) {
-    folders += (folders.empty() ? "" : " or ") + folder;
-  }
-  return object.Refuse("data", "a file in " + folders);
+  return object.Refuse("data", AllowedDataFiles(file, suite_path));
 }
 
 bool ReadSynthetic(const StrictObject& object, CatalogueEntry* entry, SyntheticTruth* truth) {

@@ -4,6 +4,7 @@
 
 #include "experiments/bench_matrix.h"
 #include "experiments/bench_suite.h"
+#include "experiments/plugin_faults.h"
 #include "problems/strict_json.h"
 #include "solvers/solver_registry.h"
 
@@ -85,6 +86,23 @@ bool SpreadOption(const StrictObject& options, const std::string& key,
   return true;
 }
 
+/// Whether the solver can be made. What a plugin does to make one is tried in a process of its own
+/// first: here it would end all cells, those of other solvers, too.
+bool CanBeMade(const NameSpec& solver, std::string* why) {
+  const SolverRegistry& registry = SolverRegistry::Global();
+  if (IsOfPlugin(solver)) {
+    const std::string end = WhyNoReturn([&] {
+      std::string ignored;
+      registry.Make(solver, nullptr, &ignored);
+    });
+    if (!end.empty()) {
+      *why = "found " + solver.ToString() + ", a plugin's solver that " + end + " while it is made";
+      return false;
+    }
+  }
+  return registry.Make(solver, nullptr, why) != nullptr;
+}
+
 /// `solver` around each of "wraps".
 bool WrapEach(const StrictObject& entry, const std::vector<std::string>& wrapped,
               const NameSpec& solver, std::vector<NameSpec>* solvers) {
@@ -95,9 +113,7 @@ bool WrapEach(const StrictObject& entry, const std::vector<std::string>& wrapped
     if (!ParseNameSpec(wrapped[i], &inner, &why)) return entry.Complain(place, why);
     NameSpec with = solver;
     with.wrapped = std::make_shared<NameSpec>(inner);
-    if (SolverRegistry::Global().Make(with, nullptr, &why) == nullptr) {
-      return entry.Complain(place, why);
-    }
+    if (!CanBeMade(with, &why)) return entry.Complain(place, why);
     solvers->push_back(std::move(with));
   }
   return true;
@@ -171,9 +187,7 @@ bool ReadBenchSolvers(const StrictObject& file, std::vector<NameSpec>* solvers) 
     if (!ReadSolverEntry(entry, &read)) return false;
     for (NameSpec& spec : read) {
       std::string why;
-      if (SolverRegistry::Global().Make(spec, nullptr, &why) == nullptr) {
-        return entry.Complain("", why);
-      }
+      if (!CanBeMade(spec, &why)) return entry.Complain("", why);
       // By what they mean: lbfgs is lbfgs/memory=10.
       if (!identities.insert(SolverIdentity(spec)).second) {
         return entry.Complain(

@@ -73,13 +73,17 @@ struct KindCounts {
   int best_basin = 0, of_basins = 0;
 };
 
-KindCounts CountKind(const BenchResults& results, const std::string& kind, std::size_t solver) {
+/// `with_target`: the instances that have the target, whose basins count.
+KindCounts CountKind(const BenchResults& results, const std::string& kind, std::size_t solver,
+                     const std::vector<std::size_t>& with_target) {
   KindCounts counts;
   for (const BenchRun& run : results.runs) {
     const BenchInstance& instance = results.instances[run.instance];
     if (run.solver != solver || instance.kind != kind) continue;
     counts.applies = counts.applies || TextAt(*run.first, "stop") != "skipped";
-    if (!instance.has_basins) continue;
+    const bool has_target =
+        std::find(with_target.begin(), with_target.end(), run.instance) != with_target.end();
+    if (!instance.has_basins || !has_target) continue;
     ++counts.of_basins;
     counts.best_basin += run.ran && run.basin == 0 ? 1 : 0;
   }
@@ -111,9 +115,15 @@ void AddPairCounts(const CostTable& costs, std::vector<std::string>* cells) {
   }
 }
 
-/// For people: numbers that are not whole to four digits.
+/// For people: numbers that are not whole to four digits, and seeds that there are.
 CsvTable RoundedTable(const CsvTable& table) {
   CsvTable rounded = table;
+  for (const std::string& column : table.columns()) {
+    if (column != "data_seed" && column != "start_seed") continue;
+    for (std::size_t row = 0; row < table.num_rows(); ++row) {
+      if (table.Text(row, column) == "0") rounded.Set(row, column, "");
+    }
+  }
   for (std::size_t row = 0; row < table.num_rows(); ++row) {
     for (const std::string& column : table.columns()) {
       const double value = table.Number(row, column);
@@ -130,10 +140,10 @@ struct LatexPart {
   std::vector<std::string> shown;
 };
 const LatexPart& RunPart() {
-  static const auto& part =
-      *new LatexPart{{"problem", "terms", "data_seed", "start_seed"},
-                     {"solver", "seed", "stop", "verified", "iterations", "evaluations", "energy",
-                      "gap", "gradient_norm", "basin", "failed", "seconds", "work_units"}};
+  static const auto& part = *new LatexPart{
+      {"problem", "terms", "data_seed", "start_seed"},
+      {"solver", "seed", "stop", "verified", "iterations", "evaluations", "energy", "gap",
+       "gradient_norm", "basin", "failed", "seconds", "seconds_low", "seconds_high", "work_units"}};
   return part;
 }
 const LatexPart& SolverPart() {
@@ -222,7 +232,7 @@ CsvTable SolverTable(const BenchResults& results) {
       }
       if (costs[0].empty()) continue;
       for (std::size_t s = 0; s < results.solvers.size(); ++s) {
-        const KindCounts counts = CountKind(results, kind, s);
+        const KindCounts counts = CountKind(results, kind, s, rows_of);
         if (!counts.applies) continue;
         const bool basins = counts.of_basins > 0;
         std::vector<std::string> cells = {results.targets[t].label,

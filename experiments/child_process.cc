@@ -1,6 +1,7 @@
 #include "experiments/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -31,6 +32,8 @@ constexpr char kAnswer = 'A';
 constexpr char kOutOfMemory = 'M';
 constexpr char kException = 'E';
 
+constexpr rlim_t kLongestLog = 16 << 20;  // bytes
+
 void Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   rlimit limit = {};
   getrlimit(resource, &limit);
@@ -48,6 +51,8 @@ rlim_t BytesInUse() {
 
 void SetLimits(const ChildLimits& limits) {
   Limit(RLIMIT_CORE, 0, 0);
+  // Who prints in a loop is not to fill the disk.
+  Limit(RLIMIT_FSIZE, kLongestLog, RLIM_INFINITY);
   const auto seconds = static_cast<rlim_t>(std::ceil(std::min(limits.cpu_seconds, 1e9)));
   // SIGXCPU at the first, SIGKILL a second later.
   Limit(RLIMIT_CPU, seconds, seconds + 1);
@@ -75,6 +80,8 @@ void LeaveParent(pid_t parent, int answer, const std::string& log_file) {
   constexpr int kAnswerFile = 3;
   const int log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
+  // What was printed before a crash is to be in the log: in a file it would wait for a whole block.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   dup2(nothing, STDIN_FILENO);
   dup2(log >= 0 ? log : nothing, STDOUT_FILENO);
   dup2(log >= 0 ? log : nothing, STDERR_FILENO);
@@ -233,6 +240,26 @@ ChildEnd ChildProcess::Finish() {
     end.message = "ended with status " + std::to_string(WEXITSTATUS(status)) + " and no result";
   }
   return end;
+}
+
+void AllowLargeFiles() {
+  rlimit limit = {};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+std::optional<ChildEnd> RunInChild(const ChildLimits& limits,
+                                   const std::function<std::string()>& work) {
+  std::string error;
+  const auto process = ChildProcess::Start(limits, "/dev/null", work, &error);
+  if (process == nullptr) return std::nullopt;
+  constexpr int kInterval = 100;  // milliseconds
+  while (!process->Attend()) {
+    pollfd file = {process->file(), POLLIN, 0};
+    poll(&file, 1, kInterval);
+  }
+  return process->Finish();
 }
 
 }  // namespace batten

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace batten {
@@ -67,6 +68,15 @@ class ChildProcess {
   std::string answer_;
   bool is_late_ = false;
 };
+
+/// In a child, of which no file, its log included, grows beyond 16 MB before: from now on others
+/// may.
+void AllowLargeFiles();
+
+/// What `work` comes to in a process of its own that keeps no log; nothing where no process can be
+/// made.
+std::optional<ChildEnd> RunInChild(const ChildLimits& limits,
+                                   const std::function<std::string()>& work);
 
 }  // namespace batten
 

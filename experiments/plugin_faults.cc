@@ -1,6 +1,5 @@
 #include "experiments/plugin_faults.h"
 
-#include <poll.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -170,15 +169,7 @@ std::optional<ChildEnd> Ask(const RunSpec& spec, double max_seconds,
   ChildLimits limits;
   limits.wall_seconds = max_seconds;
   limits.cpu_seconds = std::max(1.0, max_seconds * spec.threads);
-  std::string error;
-  const auto process = ChildProcess::Start(limits, "/dev/null", work, &error);
-  if (process == nullptr) return std::nullopt;
-  constexpr int kInterval = 100;  // milliseconds
-  while (!process->Attend()) {
-    pollfd file = {process->file(), POLLIN, 0};
-    poll(&file, 1, kInterval);
-  }
-  return process->Finish();
+  return RunInChild(limits, work);
 }
 
 }  // namespace
@@ -186,6 +177,22 @@ std::optional<ChildEnd> Ask(const RunSpec& spec, double max_seconds,
 bool IsOfPlugin(const NameSpec& solver) {
   return PluginHas("solver", solver.name) ||
          (solver.wrapped != nullptr && IsOfPlugin(*solver.wrapped));
+}
+
+bool HasTermOfPlugin(const std::vector<NameSpec>& terms) {
+  return std::any_of(terms.begin(), terms.end(),
+                     [](const NameSpec& term) { return PluginHas("term", term.name); });
+}
+
+std::string WhyNoReturn(const std::function<void()>& work) {
+  ChildLimits limits;
+  limits.wall_seconds = 10.0;
+  limits.cpu_seconds = 2.0 * limits.wall_seconds;
+  const std::optional<ChildEnd> end = RunInChild(limits, [&work] {
+    work();
+    return std::string();
+  });
+  return end.has_value() ? end->message : "";
 }
 
 std::optional<std::vector<std::string>> TermsWithWrongGradient(

@@ -1,6 +1,7 @@
 #ifndef BATTEN_EXPERIMENTS_PLUGIN_FAULTS_H_
 #define BATTEN_EXPERIMENTS_PLUGIN_FAULTS_H_
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,14 @@ namespace batten {
 
 /// Whether the solver, or one that it wraps, is a plugin's.
 bool IsOfPlugin(const NameSpec& solver);
+
+/// Whether one of them is a plugin's.
+bool HasTermOfPlugin(const std::vector<NameSpec>& terms);
+
+/// Tries `work`, which calls code of a plugin, in a process of its own. Empty: it returned, or no
+/// process can be made; else how it ended: "ended by signal 11 (Segmentation fault)", "killed after
+/// 10 s of wall time".
+std::string WhyNoReturn(const std::function<void()>& work);
 
 /// Terms of plugins, as the problem names them, whose gradient is not that of their E near one of
 /// `points` (all variables, scaled as inside): along two directions the Taylor remainder does not

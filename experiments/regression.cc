@@ -219,6 +219,8 @@ class Finder {
     constexpr double kZero = 1e-12;
     const double allowed = rule_.energy_rounding * std::abs(before) + kZero * std::abs(start);
     if (!std::isfinite(before) || !std::isfinite(now) || std::abs(now - before) <= allowed) return;
+    // Two that went up have no result of which one could be worse.
+    if (before > start && now > start) return;
     const std::string sentence = NameOf(key) + ": ends at E = " + ShortNumber(now, 7) +
                                  ", before at " + ShortNumber(before, 7);
     (now > before ? report_->regressions : report_->differences).push_back(sentence);

@@ -2,9 +2,12 @@
 
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <new>
 
 #include "experiments/run_control.h"
+#include "experiments/running_solver.h"
 #include "experiments/short_number.h"
 #include "experiments/sparse_run.h"
 #include "problems/fit_problem.h"
@@ -93,9 +96,25 @@ void AddWarnings(const Problem& problem, RunResult* result) {
   }
 }
 
+/// What throws ends alone: its outcome says so. Not in a process of its own, which tells it better.
+Outcome MinimizeCatching(Solver* solver, Objective* objective, RunContext* context,
+                         Eigen::VectorXd* x) {
+  const Eigen::VectorXd start = *x;
+  try {
+    return solver->Minimize(objective, context, x);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& exception) {
+    if (x->size() != start.size()) *x = start;
+    constexpr std::size_t kLongest = 300;
+    return {StopReason::kNumericalFailure,
+            "threw an exception: " + Quoted(exception.what(), kLongest)};
+  }
+}
+
 /// `most_iterates`: 0 for what `spec` says.
 bool RunWatched(const Problem& problem, const NameSpec& solver_name, const RunSpec& spec,
-                std::size_t most_iterates, RunResult* result, std::string* error,
+                std::size_t most_iterates, bool catches, RunResult* result, std::string* error,
                 const EvaluationWatch& watch) {
   *result = RunResult();
   result->solver = solver_name;
@@ -115,8 +134,10 @@ bool RunWatched(const Problem& problem, const NameSpec& solver_name, const RunSp
   if (!result->skipped.empty()) return true;
   Eigen::VectorXd x =
       spec.start.size() > 0 ? problem.elimination().FreeVariables(spec.start) : objective.start();
+  const RunningSolver running(solver_name.ToString());
   control.Begin();
-  result->outcome = solver->Minimize(&objective, &control, &x);
+  result->outcome = catches ? MinimizeCatching(solver.get(), &objective, &control, &x)
+                            : solver->Minimize(&objective, &control, &x);
   control.Finish(x);
   result->observed_rate = ObservedRate(*result);
   if (result->x.allFinite()) AddWarnings(problem, result);
@@ -138,12 +159,12 @@ bool InterruptRequested() { return interrupt_requested; }
 
 bool Run(const Problem& problem, const NameSpec& solver, const RunSpec& spec, RunResult* result,
          std::string* error, const EvaluationWatch& watch) {
-  return RunWatched(problem, solver, spec, 0, result, error, watch);
+  return RunWatched(problem, solver, spec, 0, true, result, error, watch);
 }
 
 bool RunKeepingSome(const Problem& problem, const NameSpec& solver, const RunSpec& spec,
                     std::size_t most, RunResult* result, std::string* error) {
-  return RunWatched(problem, solver, spec, most, result, error, nullptr);
+  return RunWatched(problem, solver, spec, most, false, result, error, nullptr);
 }
 
 }  // namespace batten

@@ -86,8 +86,9 @@ struct RunResult {
 using EvaluationWatch = std::function<bool(Evaluation kind, const Eigen::VectorXd* x)>;
 
 /// Runs one solver from the problem's start under run control. False with one sentence in `error`
-/// for an unknown solver or option; a solver that does not apply is a result with `skipped`.
-/// `watch`, if there is one, is on the solver's clock.
+/// for an unknown solver or option; a solver that does not apply is a result with `skipped`, one
+/// that throws an exception, but for want of memory, is one with kNumericalFailure. `watch`, if
+/// there is one, is on the solver's clock.
 bool Run(const Problem& problem, const NameSpec& solver, const RunSpec& spec, RunResult* result,
          std::string* error, const EvaluationWatch& watch = nullptr);
 

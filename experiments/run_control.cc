@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 #include "experiments/kept_rows.h"
 #include "problems/constraint_projection.h"
@@ -118,7 +119,10 @@ void RunControl::OffTheClock(const std::function<void()>& work) {
 void RunControl::Note(const std::string& name, const std::string& value) {
   // A wrapped solver is run many times, and says the same each time.
   auto& notes = result_->notes;
-  const std::pair<std::string, std::string> note(name, value);
+  std::pair<std::string, std::string> note(name, value);
+  // It goes to terminals as it is.
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(note.second.begin(), note.second.end(), is_control, ' ');
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
@@ -128,6 +132,10 @@ Status RunControl::IterateOnTheWay(const Eigen::VectorXd& x) { return BookAndChe
 
 Status RunControl::BookAndCheck(const Eigen::VectorXd& x, bool may_be_the_end) {
   watch_.Pause();
+  if (x.size() != reporter_.num_variables()) {
+    throw std::logic_error("books " + std::to_string(x.size()) + " variables where there are " +
+                           std::to_string(reporter_.num_variables()));
+  }
   if (stop_reason_ != StopReason::kNotRun) ++result_->calls_past_stop;
   ++iteration_;
   AddToStream(HashPoint(x));

@@ -145,7 +145,9 @@ CheckVerdict ChecksDescent(const std::string& solver) {
     }
     if (result.outcome.reason == StopReason::kNumericalFailure ||
         result.outcome.reason == StopReason::kNotRun) {
-      return Failed(std::string("it ends with ") + ToString(result.outcome.reason) + at);
+      const std::string& message = result.outcome.message;
+      return Failed(std::string("it ends with ") + ToString(result.outcome.reason) + at +
+                    (message.empty() ? "" : ": " + message));
     }
     // A start that is the minimum already may be left by a rounding.
     constexpr double kRounding = 1e-12;

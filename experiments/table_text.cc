@@ -22,12 +22,23 @@ std::string Replaced(const std::string& text,
   return result;
 }
 
+/// Numbers to the right, words to the left.
+char AlignmentOf(const CsvTable& table, const std::string& column) {
+  const std::vector<std::string> texts = table.Distinct(column);
+  const bool has_words = std::any_of(texts.begin(), texts.end(), [](const std::string& text) {
+    double ignored = 0.0;
+    return !text.empty() && !ParseNumber(text, &ignored);
+  });
+  return has_words ? 'l' : 'r';
+}
+
 std::string LatexFloat(const CsvTable& table, const std::vector<std::string>& columns,
                        const std::vector<std::size_t>& rows, const std::string& caption) {
+  std::string alignment;
+  for (const std::string& column : columns) alignment += AlignmentOf(table, column);
   std::string text =
       "\\begin{table*}\n\\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n\\caption{" +
-      LatexText(caption) + "}\n\\begin{tabular}{" + std::string(columns.size(), 'l') +
-      "}\n\\toprule\n";
+      LatexText(caption) + "}\n\\begin{tabular}{" + alignment + "}\n\\toprule\n";
   for (const std::string& column : columns) {
     text += (&column == &columns.front() ? "" : " & ") + LatexText(column);
   }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "problems/data_paths.h"
+#include "problems/input_file.h"
 
 namespace batten {
 namespace {
@@ -21,6 +22,10 @@ bool IsFile(const fs::path& path) {
 
 std::string DataRoot() {
   std::error_code ignored;
+  // Of an installation the program itself says where it is, wherever that has been moved to.
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path beside = program.parent_path().parent_path() / kDataBesidePrograms;
+  if (fs::is_directory(beside / "problems", ignored)) return beside;
   const bool has_source = fs::is_directory(fs::path(kSourceDataDirectory) / "problems", ignored);
   return has_source ? kSourceDataDirectory : kInstallDataDirectory;
 }
@@ -52,6 +57,16 @@ std::string FindDataFile(const std::string& name, const std::string& problem_fil
     if (IsFile(path)) return path;
   }
   return "";
+}
+
+std::string AllowedDataFiles(const std::string& name, const std::string& problem_file) {
+  std::string folders;
+  std::string nearest;
+  for (const std::string& folder : DataFolders(problem_file)) {
+    folders += (folders.empty() ? "" : " or ") + folder;
+    if (nearest.empty()) nearest = NearestFileText(fs::path(folder) / name);
+  }
+  return "a file in " + folders + nearest;
 }
 
 }  // namespace batten

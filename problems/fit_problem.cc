@@ -299,7 +299,7 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
       *error = "term " + name.ToString() + " is given twice; give it once, with twice the weight";
       return nullptr;
     }
-    auto family = term->MakeFamily(fit->setting_, options, error);
+    auto family = MakeFamilyOf(*term, fit->setting_, options, error);
     if (family == nullptr) return nullptr;
     largest_weight = std::max(largest_weight, family->weight());
     problem->AddTerm(name.ToString(), std::move(family));

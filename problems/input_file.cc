@@ -8,6 +8,8 @@
 #include <iostream>
 #include <system_error>
 
+#include "cost_functions/options.h"
+
 namespace batten {
 
 bool OpenInput(const std::string& path, std::ifstream* file, std::string* error) {
@@ -19,8 +21,30 @@ bool OpenInput(const std::string& path, std::ifstream* file, std::string* error)
   } else {
     file->open(path, std::ios::binary);
   }
-  if (!file->is_open()) *error = CannotBeRead(path, errno);
-  return file->is_open();
+  if (file->is_open()) return true;
+  *error = CannotBeRead(path, errno);
+  if (errno == ENOENT) *error += NearestFileText(path);
+  return false;
+}
+
+std::string NearestFileText(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr std::size_t kMostFiles = 10'000;
+  const fs::path asked(path);
+  const fs::path folder = asked.parent_path();
+  std::vector<std::string> names;
+  std::error_code code;
+  fs::directory_iterator file(folder.empty() ? "." : folder, code);
+  for (; !code && file != fs::directory_iterator() && names.size() < kMostFiles;
+       file.increment(code)) {
+    std::error_code ignored;
+    const fs::path& name = file->path().filename();
+    const bool may_be_meant = AreNear(name, asked.filename()) && !file->is_directory(ignored);
+    if (may_be_meant) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  const std::string nearest = NearestName(asked.filename(), names);
+  return nearest.empty() ? "" : "; did you mean " + (folder / nearest).string() + "?";
 }
 
 std::string CannotBeRead(const std::string& file, int error_number) {

@@ -17,6 +17,10 @@ bool OpenInput(const std::string& path, std::ifstream* file, std::string* error)
 /// reading fails.
 bool ReadWholeFile(const std::string& path, std::string* contents, std::string* error);
 
+/// "; did you mean FILE?" where a file of its folder has nearly the name of `path`, which is not
+/// there; else empty.
+std::string NearestFileText(const std::string& path);
+
 /// `FILE: cannot be read: REASON`.
 std::string CannotBeRead(const std::string& file, int error_number);
 

@@ -134,11 +134,7 @@ bool ReadData(const StrictObject& file, CatalogueEntry* entry) {
   if (!file.Text("data", kRequired, &name)) return false;
   entry->data_path = FindDataFile(name, entry->path);
   if (!entry->data_path.empty()) return true;
-  std::string folders;
-  for (const std::string& folder : DataFolders(entry->path)) {
-    folders += (folders.empty() ? "" : " or ") + folder;
-  }
-  return file.Refuse("data", "a file in " + folders);
+  return file.Refuse("data", AllowedDataFiles(name, entry->path));
 }
 
 /// With moving parameters there are many minima, of which nobody knows that one is the least: what

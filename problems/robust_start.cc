@@ -89,7 +89,7 @@ class HuberFit {
     made.scale =
         options.Real(kScaleOption) * setting_.size * kHuberConstant / TuningConstant(made.loss);
     if (!TermRegistry::Global().Resolve(WithoutLoss(spec), &term, &options, error)) return false;
-    made.family = term->MakeFamily(setting_, options, error);
+    made.family = MakeFamilyOf(*term, setting_, options, error);
     if (made.family == nullptr || made.family->rows() == nullptr) return false;
     terms_.push_back(std::move(made));
     return true;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cost_functions/options.h"
+#include "problems/input_file.h"
 
 namespace batten {
 namespace {
@@ -92,8 +93,9 @@ bool ReadJsonFile(const std::string& path, Json* json, std::string* error) {
   std::ifstream file(path);
   // A folder can be opened but not read.
   if (!file || file.peek() == std::ifstream::traits_type::eof()) {
-    *error = path + (file.is_open() ? ": found nothing to read; allowed: a file with JSON text"
-                                    : ": found no such file that can be read");
+    *error =
+        path + (file.is_open() ? ": found nothing to read; allowed: a file with JSON text"
+                               : ": found no such file that can be read" + NearestFileText(path));
     return false;
   }
   constexpr int kTooLarge = 406;  // of nlohmann::json::out_of_range

@@ -22,6 +22,7 @@ typedef struct batten_card {
   const char* cxx_library;   /* "libstdc++, cxx11 ABI 1" */
   const char* eigen_version; /* "3.4.0" */
   uint32_t eigen_alignment;  /* EIGEN_MAX_ALIGN_BYTES, which -march=native changes */
+  uint32_t eigen_packet;     /* EIGEN_DEFAULT_ALIGN_BYTES, which also says whose memory is freed */
   uint32_t eigen_row_major;  /* 1: matrices are row-major by default */
   const char* ceres_version; /* "2.1.0" */
   uint64_t class_layout;     /* a number made of the sizes of the classes that cross over */
@@ -111,12 +112,12 @@ typedef struct batten_host {
 BATTEN_EXPORT const batten_card* batten_plugin_card(void);
 BATTEN_EXPORT void batten_plugin_register_c(const batten_host* host);
 /* NOLINTBEGIN(bugprone-macro-parentheses): the name of a parameter */
-#define BATTEN_C_PLUGIN(host)                                                       \
-  const batten_card* batten_plugin_card(void) {                                     \
-    static const batten_card card = {                                               \
-        (uint32_t)sizeof(batten_card), BATTEN_API_LEVEL, "C", 0, 0, 0, 0, 0, 0, 0}; \
-    return &card;                                                                   \
-  }                                                                                 \
+#define BATTEN_C_PLUGIN(host)                                                          \
+  const batten_card* batten_plugin_card(void) {                                        \
+    static const batten_card card = {                                                  \
+        (uint32_t)sizeof(batten_card), BATTEN_API_LEVEL, "C", 0, 0, 0, 0, 0, 0, 0, 0}; \
+    return &card;                                                                      \
+  }                                                                                    \
   void batten_plugin_register_c(const batten_host* host)
 /* NOLINTEND(bugprone-macro-parentheses) */
 

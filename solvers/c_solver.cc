@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <memory>
 
 namespace batten {
@@ -115,8 +116,23 @@ void Note(void* self, const char* name, const char* value) {
   });
 }
 
-double Number(void* self, const char* option) { return Of(self)->options->Real(option); }
-const char* Word(void* self, const char* option) { return Of(self)->options->Word(option).c_str(); }
+double Number(void* self, const char* option) {
+  double number = std::numeric_limits<double>::quiet_NaN();
+  Of(self)->Guarded([&] {
+    number = Of(self)->options->Real(option);
+    return Status::kOk;
+  });
+  return number;
+}
+
+const char* Word(void* self, const char* option) {
+  const char* word = "";
+  Of(self)->Guarded([&] {
+    word = Of(self)->options->Word(option).c_str();
+    return Status::kOk;
+  });
+  return word;
+}
 
 batten_run RunOf(CRun* run) {
   batten_run c = {};
@@ -200,8 +216,8 @@ bool MakeOption(const batten_option& c, OptionInfo* option, std::string* why) {
   if (c.words != nullptr) {
     const std::vector<std::string> words = SplitWords(c.words);
     const std::string usual = c.default_word == nullptr ? "" : c.default_word;
-    if (std::find(words.begin(), words.end(), usual) == words.end()) {
-      *why = std::string("has an option ") + c.name + " whose default is none of its words";
+    if (std::count(words.begin(), words.end(), usual) != 1) {
+      *why = std::string("has an option ") + c.name + " whose default is not one of its words";
       return false;
     }
     *option = OptionInfo::Word(c.name, usual, words, c.help);
@@ -246,6 +262,10 @@ bool MakeEntry(const batten_solver& c, SolverEntry* entry, std::string* why) {
   info.summary = c.summary;
   info.source = c.source;
   info.supports = {"linear constraints", "losses", "weights"};
+  if (c.num_options > 0 && c.options == nullptr) {
+    *why = "has " + std::to_string(c.num_options) + " options, but no list of them";
+    return false;
+  }
   for (std::uint32_t i = 0; i < c.num_options; ++i) {
     OptionInfo option;
     if (!MakeOption(c.options[i], &option, why)) return false;
@@ -267,8 +287,8 @@ void AddSolver(void* self, const batten_solver* solver) {
   } else if (MakeEntry(*solver, &entry, &why)) {
     host->registry->Add(std::move(entry));
   } else if (host->why.empty()) {
-    host->why =
-        std::string("its solver ") + (solver->name == nullptr ? "" : solver->name) + " " + why;
+    const std::string name = solver->name == nullptr ? "" : std::string(solver->name) + " ";
+    host->why = "its solver " + name + why;
   }
 }
 

@@ -15,11 +15,16 @@ std::string Hexadecimal(std::uint64_t number) {
 }
 
 std::string Differs(const std::string& field, const std::string& found, const std::string& ours) {
-  std::string advice = "build it against this Batten";
-  if (field == "Eigen alignment") {
-    advice = "build it without -march=native, or with -DEIGEN_MAX_ALIGN_BYTES=" + ours;
+  std::string advice = "; build it against this Batten";
+  if (field == "Eigen alignment" || field == "Eigen packet size") {
+    // Eigen's allocator goes by the packets of the processor, whatever the alignment is set to.
+    advice =
+        "; build it without -march=native, or with -DEIGEN_MAX_ALIGN_BYTES=16 "
+        "-DEIGEN_DONT_VECTORIZE";
+  } else if (field == "interface") {
+    return "its interface is " + found + "; allowed: C++, C";
   }
-  return "its " + field + " is " + found + ", this program's is " + ours + "; " + advice;
+  return "its " + field + " is " + found + ", this program's is " + ours + advice;
 }
 
 }  // namespace
@@ -34,6 +39,7 @@ CardFields FieldsOf(const batten_card& card) {
                  {"C++ library", TextOf(card.cxx_library)},
                  {"Eigen version", TextOf(card.eigen_version)},
                  {"Eigen alignment", std::to_string(card.eigen_alignment)},
+                 {"Eigen packet size", std::to_string(card.eigen_packet)},
                  {"Eigen storage order", card.eigen_row_major != 0 ? "row-major" : "column-major"},
                  {"Ceres version", TextOf(card.ceres_version)},
                  {"class layout", Hexadecimal(card.class_layout)}});

@@ -75,6 +75,7 @@ constexpr batten_card kThisCard = {
     BATTEN_TEXT(EIGEN_WORLD_VERSION) "." BATTEN_TEXT(EIGEN_MAJOR_VERSION) "." BATTEN_TEXT(
         EIGEN_MINOR_VERSION),
     EIGEN_MAX_ALIGN_BYTES,
+    EIGEN_DEFAULT_ALIGN_BYTES,
     Eigen::MatrixXd::IsRowMajor ? 1 : 0,
     CERES_VERSION_STRING,
     ClassLayout(),

@@ -14,16 +14,10 @@ struct Kind {
   std::vector<std::string> known;
 };
 
-bool IsName(const std::string& text) {
-  NameSpec spec;
-  std::string error;
-  return ParseNameSpec(text, &spec, &error) && spec.options.empty() && spec.wrapped == nullptr;
-}
-
 std::string WhyNotOf(const Kind& kind) {
   for (std::size_t i = 0; i < kind.added.size(); ++i) {
     const std::string& name = kind.added[i];
-    if (!IsName(name)) {
+    if (!IsSpecName(name)) {
       constexpr std::size_t kLongest = 60;
       return "registers a " + kind.name + " named " + Quoted(name, kLongest) +
              "; allowed: letters, digits, _ and -";
@@ -49,6 +43,30 @@ std::vector<std::string> KnownProblems() {
 
 }  // namespace
 
+std::string PluginRegistry::WhyNotOptions() const {
+  const auto named = [](const std::string& kind, const std::string& name,
+                        const std::vector<OptionInfo>& options) {
+    const std::string why = WhyNoOptionList(options);
+    return why.empty() ? why : "registers a " + kind + " " + name + ", which " + why;
+  };
+  for (const SolverEntry& entry : solvers_) {
+    const std::string why = named("solver", entry.info.name, entry.info.options);
+    if (!why.empty()) return why;
+  }
+  for (const CutRuleEntry& entry : cut_rules_) {
+    const std::string why = named("cut rule", entry.info.name, entry.info.options);
+    if (!why.empty()) return why;
+  }
+  for (const auto& term : terms_) {
+    // Those that every term has stand behind its own.
+    std::vector<OptionInfo> options = term->Info().options;
+    for (OptionInfo& common : CommonTermOptions()) options.push_back(std::move(common));
+    const std::string why = named("term", term->Info().name, options);
+    if (!why.empty()) return why;
+  }
+  return "";
+}
+
 std::string PluginRegistry::WhyNot() const {
   Kind solvers = {"solver", {}, SolverRegistry::Global().Names()};
   for (const SolverEntry& entry : solvers_) solvers.added.push_back(entry.info.name);
@@ -67,6 +85,8 @@ std::string PluginRegistry::WhyNot() const {
     count += kind->added.size();
   }
   if (count == 0) return "registers nothing";
+  const std::string bad_options = WhyNotOptions();
+  if (!bad_options.empty()) return bad_options;
   for (const DataReader& reader : readers_) {
     std::string why = DataReaderRegistry::Global().WhyNot(reader);
     if (!why.empty()) return why;

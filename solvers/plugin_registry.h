@@ -45,6 +45,7 @@ class PluginRegistry {
 
  private:
   std::string WhyNot() const;
+  std::string WhyNotOptions() const;
 
   std::vector<SolverEntry> solvers_;
   std::vector<CutRuleEntry> cut_rules_;

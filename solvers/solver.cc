@@ -2,6 +2,8 @@
 
 #include <glog/logging.h>
 
+#include <stdexcept>
+
 #include "problems/fit_problem.h"
 
 namespace batten {
@@ -58,7 +60,15 @@ Outcome Solver::Minimize(Objective* objective, RunContext* context, Eigen::Vecto
   CHECK(why.empty()) << why;
   CHECK_EQ(x->size(), objective->num_variables());
   if (!x->allFinite()) return {StopReason::kNumericalFailure, "the start is not finite"};
-  return DoMinimize(objective, context, x);
+  const Outcome outcome = DoMinimize(objective, context, x);
+  StopReason known = outcome.reason;
+  if (!FromString(ToString(outcome.reason), &known)) {
+    throw std::logic_error("returns the reason " +
+                           std::to_string(static_cast<int>(outcome.reason)) + ", which is none");
+  }
+  if (x->size() == objective->num_variables()) return outcome;
+  throw std::logic_error("leaves " + std::to_string(x->size()) + " variables where there are " +
+                         std::to_string(objective->num_variables()));
 }
 
 std::string WhyNoOrder(const Problem& problem, const std::string& solver_name) {

@@ -2,6 +2,9 @@
 
 #include <glog/logging.h>
 
+#include <exception>
+#include <new>
+
 #include "solvers/anderson.h"
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/banded_cholesky.h"
@@ -129,7 +132,16 @@ std::unique_ptr<Solver> SolverRegistry::Make(const NameSpec& spec, OptionValues*
     if (base == nullptr) return nullptr;
   }
   if (options_used != nullptr) *options_used = options;
-  return entry.make(options, std::move(base));
+  try {
+    return entry.make(options, std::move(base));
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& exception) {
+    constexpr std::size_t kLongest = 300;
+    *error = "solver " + spec.name +
+             " threw an exception while it was made: " + Quoted(exception.what(), kLongest);
+    return nullptr;
+  }
 }
 
 }  // namespace batten

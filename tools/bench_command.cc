@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "experiments/atomic_file.h"
 #include "experiments/bench_manifest.h"
@@ -76,6 +78,19 @@ BenchRunner::Progress Shown(Progress* progress) {
   };
 }
 
+/// Of a folder that holds another suite's results; else empty.
+std::string OtherSuiteText(const BenchSuite& suite) {
+  std::ifstream file(FLAGS_out + "/manifest.json");
+  const auto manifest = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!manifest.is_object() || !manifest.contains("suite") || !manifest["suite"].is_string()) {
+    return "";
+  }
+  const std::string before = manifest["suite"];
+  if (before == suite.name) return "";
+  return FLAGS_out + " held results of the suite " + before + "; its tables are now those of " +
+         suite.name + ", its cells stay in cells.jsonl\n";
+}
+
 /// The suite as it was, beside its results. Made before anything runs.
 bool PrepareFolder(const BenchSuite& suite, const BenchSession& session, std::string* error) {
   if (!CheckName({"out", FLAGS_out}, error)) return false;
@@ -92,6 +107,7 @@ bool PrepareFolder(const BenchSuite& suite, const BenchSession& session, std::st
 int RunSuite(const BenchSuite& suite, const std::vector<BenchCell>& cells, int jobs,
              const BenchSession& session, CommandOutput* output) {
   std::string* const error = &output->error;
+  const std::string other_suite = OtherSuiteText(suite);
   BenchRunner runner(suite, cells, {FLAGS_out}, jobs);
   if (!PrepareFolder(suite, session, error) || !runner.Open(error)) return kBadInput;
   const InterruptibleRun interruptible;
@@ -101,6 +117,7 @@ int RunSuite(const BenchSuite& suite, const std::vector<BenchCell>& cells, int j
   }
   const bool is_interrupted = InterruptRequested();
   const int status = WriteBenchResults(FLAGS_out, FLAGS_figures, FLAGS_strict, output);
+  output->results += other_suite;
   if (is_interrupted) {
     *error = "interrupted after " + std::to_string(runner.num_finished()) + " of " +
              std::to_string(runner.num_cells()) + " cells; the same command goes on";

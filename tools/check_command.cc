@@ -121,7 +121,7 @@ std::string TableOf(const LoadedPlugin& plugin, const std::vector<CheckRow>& row
     line.resize(kNameWidth, ' ');
     line += row.verdict.passed ? "passed" : "FAILED";
     line.resize(kIndent, ' ');
-    text += line + Wrapped(row.verdict.detail, kIndent, kIndent);
+    text += line + Wrapped(OneLine(row.verdict.detail), kIndent, kIndent);
   }
   return text;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "experiments/atomic_file.h"
+#include "experiments/running_solver.h"
 #include "tools/command.h"
 #include "tools/interrupts.h"
 
@@ -37,6 +40,49 @@ void PrintError(const std::string& message) { WriteAll(STDERR_FILENO, OneLine(me
   PrintError("batten: internal error: " + what);
   RemovePendingTemporaryFiles();
   _exit(kFault);
+}
+
+/// What runs, for last words: "newton: ", or nothing.
+std::string RunningText() {
+  const std::string name = RunningSolverName();
+  return name.empty() ? name : name + ": ";
+}
+
+pid_t own_process = 0;
+bool main_has_returned = false;
+
+/// A plugin that calls exit() is not to look like a run that went well. In a child, whose end its
+/// parent judges, nothing is said.
+void OnExit() {
+  if (main_has_returned || getpid() != own_process) return;
+  PrintError("batten: " + RunningText() + "a plugin has ended the program with exit()");
+  RemovePendingTemporaryFiles();
+  _exit(kFault);
+}
+
+/// Says which solver it was, and dies as the signal has it.
+void OnCrash(int number) {
+  if (getpid() == own_process) {
+    // No std::string: memory may be what is broken.
+    const char* const name = RunningSolverName();
+    for (const char* text : {"batten: ", name, *name == '\0' ? "" : ": ",
+                             "ended by a signal: ", sigdescr_np(number), "\n"}) {
+      if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
+    }
+  }
+  raise(number);  // the handler is gone by now
+}
+
+void HandlePlugins() {
+  own_process = getpid();
+  std::atexit(&OnExit);
+#if !defined(__SANITIZE_ADDRESS__)
+  struct sigaction action = {};
+  action.sa_handler = &OnCrash;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+    sigaction(number, &action, nullptr);
+#endif
 }
 
 /// Ends the program at a failed CHECK, ours or Ceres', before glog prints a stack trace and aborts.
@@ -118,5 +164,8 @@ int main(int argc, char** argv) {
   batten::FillStandardStreams();
   batten::SilenceLogs(argc > 0 ? argv[0] : "batten");
   batten::HandleInterrupts();
-  return batten::Main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  batten::HandlePlugins();
+  const int status = batten::Main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  batten::main_has_returned = true;
+  return status;
 }

@@ -91,14 +91,17 @@ std::string CountsText(const Tape& tape) {
 
 std::string SideText(const Side& side) {
   constexpr double kMilliseconds = 1e3;
-  const auto part = [&side](double seconds) {
+  // Medians of parts need not add up to that of the whole: shares are those of their own sum.
+  const double sum = side.time.evaluation + side.time.solver;
+  const auto part = [sum](double seconds) {
     return ShortNumber(kMilliseconds * seconds, 3) + " ms (" +
-           ShortNumber(100.0 * seconds / side.time.run, 2) + " %)";
+           ShortNumber(100.0 * seconds / sum, 2) + " %)";
   };
   return side.tape.run.solver.ToString() + ": " + std::to_string(side.tape.points.size()) +
          " points, " + ToString(side.tape.run.outcome.reason) + "; " + CountsText(side.tape) +
-         "\n  " + ShortNumber(kMilliseconds * side.time.run, 3) + " ms, of which evaluation " +
-         part(side.time.evaluation) + ", the solver itself " + part(side.time.solver) + "\n";
+         "\n  " + ShortNumber(kMilliseconds * side.time.run, 3) +
+         " ms; medians of its parts: evaluation " + part(side.time.evaluation) +
+         ", the solver itself " + part(side.time.solver) + "\n";
 }
 
 Json SideJson(const Side& side) {

@@ -83,11 +83,35 @@ TEST(OptionValues, HoldsTheDefaultsAndListsThemInAlphabeticalOrder) {
   EXPECT_EQ(values.ToText(), expected);
 }
 
-TEST(OptionValues, DiesOfANameThatIsNotThere) {
+TEST(OptionValues, ThrowsAtANameThatIsNotThere) {
   const OptionValues values(LbfgsOptions());
-  EXPECT_DEATH(values.Real("memroy"), "memroy");
-  EXPECT_DEATH(values.Word("memory"), "memory");
+  const auto what = [](const auto& ask) -> std::string {
+    try {
+      ask();
+    } catch (const std::logic_error& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_EQ(what([&] { values.Real("memroy"); }),
+            "asks for an option memroy that it has not declared; did you mean memory?");
+  EXPECT_EQ(what([&] { values.Word("memory"); }),
+            "asks for an option memory that it has not declared; did you mean wolfe?");
+  EXPECT_EQ(what([] { OptionValues().Real("x"); }),
+            "asks for an option x that it has not declared");
   EXPECT_DEATH(values.Integer("radius"), "radius");
+}
+
+TEST(OptionList, SaysWhatIsWrongWithIt) {
+  EXPECT_EQ(WhyNoOptionList(LbfgsOptions()), "");
+  const auto number = [](const std::string& name) {
+    return OptionInfo::Real(name, 0.0, -1.0, 1.0, "help");
+  };
+  EXPECT_EQ(WhyNoOptionList({number("a"), number("b"), number("a")}), "has two options named a");
+  EXPECT_EQ(WhyNoOptionList({number("a=b")}),
+            "has an option named \"a=b\"; allowed: letters, digits, _ and -");
+  EXPECT_EQ(WhyNoOptionList({OptionInfo::Word("a", "x.5", {"x.5", ""}, "help")}),
+            "has an option a with the word \"\"; allowed: letters, digits, _, -, . and +");
 }
 
 TEST(ParseNameSpec, ReadsNameOptionsAndWrappedMethod) {

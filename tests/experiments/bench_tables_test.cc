@@ -367,7 +367,7 @@ TEST(TablesLatex, SetsAFloatForEachGroupAndForAsManyRowsAsAPageHas) {
   EXPECT_THAT(text, HasSubstr("\\caption{a\\_b: target gap\\_2}"));
   // No column of basins, of which there are none, and none that was not asked for.
   EXPECT_EQ(CountOf(text, "solver & seconds \\\\\n"), 3);
-  EXPECT_EQ(CountOf(text, "\\begin{tabular}{ll}"), 3);
+  EXPECT_EQ(CountOf(text, "\\begin{tabular}{lr}"), 3);
   EXPECT_EQ(CountOf(text, "s50 & $1.5\\cdot10^{-3}$ \\\\\n"), 1);
   EXPECT_EQ(CountOf(text, "words"), 0);
 }

@@ -165,6 +165,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         FaultInBench{"fault_crasher", "crashed", "crashed", 0, "ended by signal 6 (Aborted)"},
         FaultInBench{"fault_throws", "crashed", "crashed", 0, "threw an exception: no such luck"},
+        FaultInBench{"fault_resizes", "crashed", "crashed", 0,
+                     "books 21 variables where there are 20"},
+        FaultInBench{"fault_exits", "crashed", "crashed", 0, "ended with status 0 and no result"},
+        FaultInBench{"fault_reason", "crashed", "crashed", 0,
+                     "returns the reason 77, which is none"},
         FaultInBench{"fault_sleeper", "wall_limit", "wall_limit", 0, "of wall time"},
         FaultInBench{"fault_worker", "cpu_limit", "cpu_limit", 0, "of processor time"},
         FaultInBench{"fault_nan", "", "no_finite_end", 0, "its end is no finite number"},

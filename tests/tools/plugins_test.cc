@@ -142,25 +142,40 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"forged_cxx_library", {"its C++ library is libstdc++, cxx11 ABI 0"}},
         Refused{"forged_eigen_version", {"its Eigen version is 3.3.9, this program's is 3."}},
         Refused{"forged_eigen_alignment", {"its Eigen alignment is 64", "-march=native"}},
+        Refused{"forged_interface", {"its interface is Rust; allowed: C++, C"}},
         Refused{"forged_ceres_version", {"its Ceres version is 1.14.0, this program's is 2."}},
         Refused{"forged_class_layout", {"its class layout is ", "this program's is "}}),
     [](const auto& row) { return row.param.plugin; });
 
 INSTANTIATE_TEST_SUITE_P(
     Symbols, RefusedPlugin,
-    ::testing::Values(Refused{"forged_without_card", {"has no symbol batten_plugin_card"}},
-                      Refused{"forged_without_register", {"has no symbol batten_plugin_register"}},
-                      Refused{"forged_undefined_symbol", {"batten::FunctionThatNoBattenHas(int)"}},
-                      Refused{"forged_throws", {"threw while it registered: no licence found"}},
-                      Refused{"forged_empty", {"registers nothing"}},
-                      Refused{"forged_taken_name",
-                              {"registers a solver named lbfgs, which is there already"}}),
+    ::testing::Values(
+        Refused{"forged_without_card", {"has no symbol batten_plugin_card"}},
+        Refused{"forged_without_register", {"has no symbol batten_plugin_register"}},
+        Refused{"forged_undefined_symbol", {"batten::FunctionThatNoBattenHas(int)"}},
+        Refused{"forged_throws", {"threw while it registered: no licence found"}},
+        Refused{"forged_empty", {"registers nothing"}},
+        Refused{"forged_c_options_1", {"solver forged_c has 2 options, but no list"}},
+        Refused{"forged_c_options_2", {"has two options named momentum"}},
+        Refused{"forged_c_options_3", {"has an option named \"mom=x\"; allowed: letters"}},
+        Refused{"forged_taken_name", {"registers a solver named lbfgs, which is there already"}}),
     [](const auto& row) { return row.param.plugin; });
 
 TEST(Plugins, BuiltForWiderVectorsIsRefused) {
   if (!std::filesystem::exists(Plugin("wider_vectors"))) GTEST_SKIP() << "no such processor";
   ExpectRefused(RunBatten({"list", PluginFlag("wider_vectors")}),
                 {"its Eigen alignment is 32, this program's is 16"});
+  ExpectRefused(RunBatten({"list", PluginFlag("wider_packets")}),
+                {"its Eigen packet size is 32, this program's is 16",
+                 "-DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_DONT_VECTORIZE"});
+}
+
+TEST(Plugins, BuiltForWiderVectorsAsTheRefusalAdvisesPassesEveryCheck) {
+  if (!std::filesystem::exists(Plugin("wider_without_eigen"))) GTEST_SKIP() << "no such processor";
+  const TemporaryFolder folder;
+  const Ended result =
+      RunBatten({"check", Plugin("wider_without_eigen"), "--badge=" + (folder / "badge.json")});
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
 }
 
 TEST(Plugins, WhatIsNoSharedObjectIsRefused) {

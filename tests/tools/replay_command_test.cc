@@ -32,7 +32,7 @@ TEST(ReplayCommand, SplitsTimeAndWritesTapesThatReadBack) {
   const Ended ended = RunBatten(
       {"replay", "--problem=rhino", "--solver=lbfgs", "--against=ceres_lbfgs", "--out=" + folder});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("of which evaluation "));
+  EXPECT_THAT(ended.out, HasSubstr("medians of its parts: evaluation "));
   const auto replay = nlohmann::json::parse(std::ifstream(folder + "/replay.json"));
   const auto& first = replay.at("first");
   // lbfgs on a quadratic asks for one product per iteration beside the gradient.
