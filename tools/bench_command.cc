@@ -164,9 +164,8 @@ Command BenchCommand() {
       "targets and budgets. Each cell of the matrix runs in a process of its own, whose time and "
       "memory are limited: one that crashes or hangs is a row that says so.",
       "What is finished stays: the same command goes on where it was interrupted, killed or ran "
-      "out "
-      "of disk, and runs again only cells of which the program, the problem, the data or an option "
-      "has changed."};
+      "out of disk, and runs again only cells of which the program, a loaded plugin, the problem, "
+      "the data or an option has changed."};
   command.examples = {"batten bench suite.json --dry_run",
                       "batten bench suite.json --out=out/bench",
                       "batten bench suite.json --out=out/part_2 --shard=2/8"};
