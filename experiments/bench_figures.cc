@@ -179,8 +179,9 @@ std::vector<PlotPanel> DistributionPanels(const BenchResults& results) {
       for (const std::vector<double>& costs : AllCosts(results, cost, goal)) {
         steps.push_back(Distribution(costs));
       }
-      panels.push_back(StepPanel(Title(results, "instances x targets reached", goal),
-                                 AxisName(cost), steps, results.solvers, FirstPlace(steps)));
+      panels.push_back(
+          StepPanel(Title(results, "instances x targets reached, " + AxisName(cost), goal),
+                    AxisName(cost), steps, results.solvers, FirstPlace(steps)));
     }
   }
   return panels;
@@ -192,10 +193,11 @@ std::vector<PlotPanel> PairPanelsOf(const BenchResults& results, std::size_t tar
     for (std::size_t b = a + 1; b < results.solvers.size(); ++b) {
       const CostTable costs = PairCosts(results, target, BenchCost::kEvaluations, a, b);
       if (!AnyFinite(costs)) continue;
-      panels.push_back(
-          StepPanel(Title(results, results.targets[target].label, BenchGoal::kOwnBasin),
-                    "times the better one's evaluations", PairProfiles(costs, 0, 1),
-                    {results.solvers[a], results.solvers[b]}, 1.0));
+      const std::string what =
+          results.solvers[a] + " and " + results.solvers[b] + ", " + results.targets[target].label;
+      panels.push_back(StepPanel(Title(results, what, BenchGoal::kOwnBasin),
+                                 "times the better one's evaluations", PairProfiles(costs, 0, 1),
+                                 {results.solvers[a], results.solvers[b]}, 1.0));
     }
   }
   return panels;
