@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <set>
 
 namespace batten {
 namespace {
@@ -89,15 +88,18 @@ bool ReadCells(const std::string& path, std::vector<OrderedJson>* cells,
 }
 
 std::size_t KeepCells(const OrderedJson& keys, std::vector<OrderedJson>* cells) {
-  std::set<std::string> kept;
+  std::map<std::string, std::size_t> places;
   for (const OrderedJson& key : keys) {
-    if (key.is_string()) kept.insert(key.get<std::string>());
+    if (key.is_string()) places.emplace(key.get<std::string>(), places.size());
   }
   const std::size_t before = cells->size();
-  const auto is_other = [&kept](const OrderedJson& cell) {
-    return kept.count(TextField(cell, "key")) == 0;
+  const auto is_other = [&places](const OrderedJson& cell) {
+    return places.count(TextField(cell, "key")) == 0;
   };
   cells->erase(std::remove_if(cells->begin(), cells->end(), is_other), cells->end());
+  std::sort(cells->begin(), cells->end(), [&places](const OrderedJson& a, const OrderedJson& b) {
+    return places.at(TextField(a, "key")) < places.at(TextField(b, "key"));
+  });
   return before - cells->size();
 }
 

@@ -26,7 +26,8 @@ bool ReadLines(const std::string& path,
 bool ReadCells(const std::string& path, std::vector<OrderedJson>* cells,
                std::vector<std::string>* notes, std::string* error);
 
-/// Leaves the rows whose key is among `keys`, an array of texts. Returns how many are gone.
+/// Leaves the rows whose key is among `keys`, an array of texts, in the order of these: rows stand
+/// in the order in which they were finished. Returns how many are gone.
 std::size_t KeepCells(const OrderedJson& keys, std::vector<OrderedJson>* cells);
 
 /// The field as text; "" where it is missing or of another type.

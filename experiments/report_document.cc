@@ -11,6 +11,7 @@
 #include "experiments/report_bench.h"
 #include "experiments/report_cells.h"
 #include "experiments/report_curves.h"
+#include "experiments/report_groups.h"
 #include "experiments/report_plots.h"
 #include "experiments/report_tables.h"
 #include "experiments/report_traces.h"
@@ -20,19 +21,6 @@ namespace batten {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The instances that rows belong to, each with the E that its runs are held against.
-struct Group {
-  OrderedJson names;                   // problem, terms, seeds of data and start
-  double direct = HUGE_VAL;            // lowest E* of a direct answer
-  double best = HUGE_VAL;              // of bench: E of the best basin
-  double lowest = HUGE_VAL;            // lowest E that a run has seen
-  double unit_seconds = std::nan("");  // of bench: of one evaluation of E
-
-  bool is_direct() const { return std::isfinite(direct); }
-  bool has_basins() const { return !is_direct() && std::isfinite(best); }
-  double minimum() const { return is_direct() ? direct : has_basins() ? best : lowest; }
-};
 
 /// What one reading of a folder holds.
 class FolderReader {
@@ -53,7 +41,6 @@ class FolderReader {
   bool IsBench() const { return Has("instances.jsonl"); }
   bool ReadTraces(std::string* error);
   void ReadBench();
-  void FindGroups();
   bool ReadLogs(std::string* error);
   bool ReadManifest(std::string* error);
   void LeaveOutOtherCells();
@@ -66,8 +53,8 @@ class FolderReader {
   std::vector<OrderedJson> cells_;
   std::vector<ReportTrace> traces_;  // one per cell, without rows where there is none
   BenchFacts bench_;
-  std::vector<Group> groups_;
-  std::vector<std::size_t> group_of_;  // of each cell
+  std::vector<double> targets_;  // of the page's profiles
+  ReportGroups groups_;
   OrderedJson logs_ = OrderedJson::object();
   OrderedJson manifest_;
   OrderedJson bench_notes_ = OrderedJson::array();
@@ -107,35 +94,6 @@ void FolderReader::ReadBench() {
   for (OrderedJson& cell : cells_) {
     const auto basin = bench_.basin.find(TextField(cell, "key"));
     if (basin != bench_.basin.end()) cell["basin"] = basin->second;
-  }
-}
-
-void FolderReader::FindGroups() {
-  std::map<std::string, std::size_t> places;
-  for (std::size_t k = 0; k < cells_.size(); ++k) {
-    const OrderedJson& cell = cells_[k];
-    OrderedJson names = OrderedJson::object();
-    for (const char* field : {"problem", "terms", "data_seed", "start_seed"}) {
-      if (cell.contains(field)) names[field] = cell[field];
-    }
-    const std::size_t place = places.emplace(names.dump(), groups_.size()).first->second;
-    if (place == groups_.size()) {
-      groups_.emplace_back();
-      groups_.back().names = std::move(names);
-    }
-    group_of_.push_back(place);
-    Group& group = groups_[place];
-    const double direct = NumberField(cell, "minimum_energy");
-    if (std::isfinite(direct)) group.direct = std::min(group.direct, direct);
-    const auto basin = bench_.best.find(TextField(cell, "key"));
-    if (basin != bench_.best.end()) group.best = std::min(group.best, basin->second);
-    const auto unit = bench_.unit_seconds.find(TextField(cell, "key"));
-    if (unit != bench_.unit_seconds.end()) group.unit_seconds = unit->second;
-    const double energy = NumberField(cell, "energy");
-    if (std::isfinite(energy)) group.lowest = std::min(group.lowest, energy);
-    for (const ReportTrace::Row& row : traces_[k].rows) {
-      if (std::isfinite(row.energy)) group.lowest = std::min(group.lowest, row.energy);
-    }
   }
 }
 
@@ -208,7 +166,11 @@ bool FolderReader::TracesJson(std::string* json, std::string* error) {
     const ReportTrace& trace = traces_[k];
     if (trace.rows.empty()) continue;
     const std::string key = TextField(cells_[k], "key");
-    const double minimum = groups_[group_of_[k]].minimum();
+    const ReportGroup& group = groups_.list[groups_.of_cell[k]];
+    const double minimum = group.minimum();
+    const auto common = bench_.start.find(key);
+    const double start =
+        common != bench_.start.end() ? common->second : NumberField(cells_[k], "start_energy");
     text += (text.size() > 1 ? ",\"" : "\"") + key + "\":[" + std::to_string(trace.num_rows);
     for (double Row::*column : kColumns) {
       text += ",[";
@@ -228,9 +190,10 @@ bool FolderReader::TracesJson(std::string* json, std::string* error) {
       return false;
     }
     const std::vector<Row>& rows = whole.rows.empty() ? trace.rows : whole.rows;
-    text += ',' + TargetHits(rows, minimum);
+    text += ',' + TargetHits(rows, targets_, start, minimum, group.truth);
     const auto own = bench_.own.find(key);
-    if (own != bench_.own.end()) text += ',' + TargetHits(rows, own->second);
+    if (own != bench_.own.end())
+      text += ',' + TargetHits(rows, targets_, start, own->second, group.truth);
     text += ']';
   }
   *json = text + "}";
@@ -244,7 +207,8 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
   LeaveOutOtherCells();
   if (!ReadTraces(error) || !ReadLogs(error) || !ReadBenchNotes(error)) return false;
   ReadBench();
-  FindGroups();
+  targets_ = ReportTargets(bench_.targets);
+  groups_ = FindReportGroups(cells_, traces_, bench_);
   OrderedJson tables, pictures, pages;
   // Of compare the rows of cells.jsonl once more; that of bench has basins and costs beside them.
   const std::vector<std::string> skipped(has_cells && !IsBench() ? 1 : 0, "table.csv");
@@ -261,15 +225,6 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
              "has written (cells.jsonl or CSV tables)";
     return false;
   }
-  OrderedJson groups = OrderedJson::array();
-  for (const Group& group : groups_) {
-    OrderedJson shown = group.names;
-    shown["minimum"] = std::isfinite(group.minimum()) ? OrderedJson(group.minimum()) : nullptr;
-    shown["direct"] = group.is_direct();
-    shown["basins"] = group.has_basins();
-    if (std::isfinite(group.unit_seconds)) shown["unit_seconds"] = group.unit_seconds;
-    groups.push_back(std::move(shown));
-  }
   std::error_code ignored;
   const fs::path whole = fs::weakly_canonical(folder_, ignored);
   OrderedJson summary = {{"format", "batten.report/1"},
@@ -277,8 +232,10 @@ bool FolderReader::Read(ReportDocument* document, std::string* error) {
                          {"version", kVersion},
                          {"commit", kGitCommit},
                          {"cells", CellsByColumn(cells_)},
-                         {"group_of", group_of_},
-                         {"groups", std::move(groups)},
+                         {"group_of", groups_.of_cell},
+                         {"groups", GroupsJson(groups_)},
+                         {"targets", targets_},
+                         {"suite_targets", bench_.targets},
                          {"pages", std::move(pages)},
                          {"tables", std::move(tables)},
                          {"pictures", std::move(pictures)},

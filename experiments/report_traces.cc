@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -130,17 +131,28 @@ bool ReadReportTrace(const std::string& path, std::size_t most, ReportTrace* tra
   return true;
 }
 
-std::string TargetHits(const std::vector<ReportTrace::Row>& rows, double minimum) {
+std::vector<double> ReportTargets(const std::vector<double>& suite) {
+  std::vector<double> targets = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
+  targets.insert(targets.end(), suite.begin(), suite.end());
+  std::sort(targets.begin(), targets.end(), std::greater<>());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  return targets;
+}
+
+std::string TargetHits(const std::vector<ReportTrace::Row>& rows,
+                       const std::vector<double>& targets, double start, double minimum,
+                       double truth) {
   using Row = ReportTrace::Row;
-  std::vector<const Row*> hits(kNumReportTargets, nullptr);
-  std::size_t next = 0;
-  for (const Row& row : rows) {
-    const double gap = (row.energy - minimum) / (rows[0].energy - minimum);
-    // A start that is the minimum has reached all targets.
-    const bool is_there = row.energy <= minimum;
-    while (next < hits.size() && (is_there || gap <= std::pow(10.0, -1.0 - next))) {
-      hits[next++] = &row;
-    }
+  if (std::isnan(start)) start = rows[0].energy;
+  std::vector<const Row*> hits;
+  for (const double target : targets) {
+    const auto is_there = [&](const Row& row) {
+      if (target == 0.0) return row.energy <= truth;
+      // A start that is the minimum has reached all gaps.
+      return row.energy <= minimum || (row.energy - minimum) / (start - minimum) <= target;
+    };
+    const auto found = std::find_if(rows.begin(), rows.end(), is_there);
+    hits.push_back(found == rows.end() ? nullptr : &*found);
   }
   std::string text = "[";
   for (double Row::*column :

@@ -27,13 +27,18 @@ std::vector<std::string> CsvFields(std::string_view line);
 bool ReadReportTrace(const std::string& path, std::size_t most, ReportTrace* trace,
                      std::vector<std::string>* notes, std::string* error);
 
-/// The targets of the page's profiles: gaps 1e-1, 1e-2, ..., 1e-10.
-inline constexpr int kNumReportTargets = 10;
+/// The targets of the page's profiles: gaps 1e-1, 1e-2, ..., 1e-10 and those of `suite`, from the
+/// widest to the narrowest, then 0, the noise floor, if `suite` has it.
+std::vector<double> ReportTargets(const std::vector<double>& suite);
 
 /// What a run needs to each target, from all rows of its trace: JSON of four lists (iterations,
-/// evaluations, seconds, processor seconds) with one number or null a target. The gap is
-/// (E - minimum) / (E(start) - minimum).
-std::string TargetHits(const std::vector<ReportTrace::Row>& rows, double minimum);
+/// evaluations, seconds, processor seconds) with one number or null a target. A gap is
+/// (E - minimum) / (start - minimum), as some methods have done a step before their first row
+/// (`start` NaN: E of that row); the noise floor is reached with E at most `truth`, never where
+/// that is NaN.
+std::string TargetHits(const std::vector<ReportTrace::Row>& rows,
+                       const std::vector<double>& targets, double start, double minimum,
+                       double truth);
 
 /// Numbers with 6 digits, NaN as null: enough for a plot.
 std::string PlotNumber(double value);

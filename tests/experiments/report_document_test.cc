@@ -77,6 +77,18 @@ TEST_F(ReportDocumentTest, LeavesOutCellsThatTheSuiteNoLongerHas) {
               ::testing::HasSubstr("of cells that the suite had before: 1"));
 }
 
+// Rows stand in the order in which they were finished, which differs from run to run.
+TEST_F(ReportDocumentTest, HasTheCellsOfABenchmarkInTheOrderOfItsSuite) {
+  Write("cells.jsonl",
+        "{\"key\": \"c\", \"problem\": \"r\"}\n{\"key\": \"a\", \"problem\": \"q\"}\n"
+        "{\"key\": \"b\", \"problem\": \"p\"}\n");
+  Write("manifest.json", "{\"format\": \"batten.manifest/1\", \"cells\": [\"b\", \"c\", \"a\"]}");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["cells"]["rows"],
+            json::parse("[[\"b\", \"p\"], [\"c\", \"r\"], [\"a\", \"q\"]]"));
+  EXPECT_EQ(Summary()["groups"][0]["problem"], "p");
+}
+
 TEST_F(ReportDocumentTest, LeavesOutATornLastLineAndSaysSo) {
   Write("cells.jsonl", "{\"solver\": \"cg\"}\n{\"solver\": \"gi");
   ASSERT_TRUE(Read()) << error_;
@@ -126,7 +138,7 @@ TEST_F(ReportDocumentTest, FindsTheIterationsToEachTargetInTheWholeTrace) {
   EXPECT_EQ(shown[1], json::parse("[0, 25, 100, 225, 400]"));
   EXPECT_EQ(shown[2][1], 25 + 50 + 2);  // calls of E, of the gradient, products; no projections
   EXPECT_EQ(shown[3][1], 75);
-  for (int j = 1; j <= kNumReportTargets; ++j) {
+  for (int j = 1; j <= 10; ++j) {
     const int expected = static_cast<int>(std::ceil(j * std::log(10.0) / std::log(4.0)));
     EXPECT_EQ(shown[7][0][j - 1], expected) << j;
     EXPECT_EQ(shown[7][2][j - 1], 3 * expected) << j;
@@ -204,6 +216,55 @@ TEST_F(ReportDocumentTest, HasTheWorkUnitOfEachInstanceOfABenchmark) {
   EXPECT_EQ(groups[0]["unit_seconds"], 0.25);
   EXPECT_EQ(groups[1]["unit_seconds"], 0.5);
   EXPECT_FALSE(groups[2].contains("unit_seconds"));  // not measured
+}
+
+// Some methods have done a step before their first row.
+TEST_F(ReportDocumentTest, TakesGapsFromTheStartAndNotFromTheFirstRow) {
+  Write("cells.jsonl",
+        "{\"key\": \"b\", \"problem\": \"p\", \"minimum_energy\": 0, \"start_energy\": 8}\n");
+  Write("traces/b.csv", "iteration,energy\n0,4\n1,0.7\n2,0.3\n3,0.03\n");
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Traces()["b"][7][0][0], 1);  // 0.7 is below 0.8
+  EXPECT_EQ(Traces()["b"][7][0][1], 3);
+}
+
+// The start has a gap of 1, iteration k one of 2^-k and E = 2^-k; the truth has E = 0.2.
+TEST_F(ReportDocumentTest, HasTheTargetsOfTheSuiteAndTheNoiseFloor) {
+  json cell = {
+      {"format", "batten.cell/1"}, {"key", "a"},      {"problem", "p"},     {"solver", "cg"},
+      {"stop", "solved"},          {"instance", "1"}, {"minimum_energy", 0}};
+  json later = cell;  // has done a step before the start that it tells of
+  cell["iterations"] = later["iterations"] = 8;
+  cell["start_energy"] = 1;
+  later["key"] = "b";
+  later["solver"] = "gim";
+  later["start_energy"] = 0.5;
+  Write("cells.jsonl", cell.dump() + "\n" + later.dump() + "\n");
+  Write("traces/b.csv", "iteration,energy\n0,0.5\n1,0.2\n");
+  Write("instances.jsonl",
+        "{\"key\": \"1\", \"minimum_energy\": 0, \"truth_energy\": 0.2, \"noise\": 0.1, "
+        "\"num_variables\": 40}\n");
+  Write("manifest.json",
+        "{\"format\": \"batten.manifest/1\", \"cells\": [\"a\", \"b\"], \"gap_targets\": [0.25, "
+        "0.01]}");
+  std::string trace = "iteration,energy\n";
+  for (int k = 0; k <= 8; ++k) {
+    trace += std::to_string(k) + "," + std::to_string(std::pow(2.0, -k)) + "\n";
+  }
+  Write("traces/a.csv", trace);
+  ASSERT_TRUE(Read()) << error_;
+  EXPECT_EQ(Summary()["targets"],
+            json::parse("[0.25, 0.1, 0.01, 0.001, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 0]"));
+  EXPECT_EQ(Summary()["suite_targets"], json::parse("[0.25, 0.01, 0]"));
+  EXPECT_EQ(Summary()["groups"][0]["truth"], 0.2);
+  EXPECT_EQ(Summary()["groups"][0]["num_variables"], 40);
+  const json hits = Traces()["a"][7][0];
+  ASSERT_EQ(hits.size(), 12u);
+  EXPECT_EQ(hits[0], 2);
+  EXPECT_EQ(hits[2], 7);
+  EXPECT_TRUE(hits[3].is_null());
+  EXPECT_EQ(hits[11], 3);  // 1/8 is the first at most 0.2
+  EXPECT_EQ(Traces()["b"][7][0][0], 1);
 }
 
 TEST_F(ReportDocumentTest, ASkippedRunBelongsToTheProblemAsTheOthersRanIt) {

@@ -15,6 +15,17 @@ function areTitlesWhole(plot) {
     left >= 0 && top >= 0 && right <= width && bottom <= height);
 }
 
+// The names in a plot's legend as Vega has drawn them; what is longer than its limit is cut.
+function legendLabels(view) {
+  const found = [];
+  const visit = (mark, isLegend) => (mark.items ?? []).forEach(item => {
+    if (mark.marktype === 'group') item.items?.forEach(child => visit(child, isLegend || mark.role === 'legend'));
+    else if (isLegend && mark.role === 'legend-label') found.push(item);
+  });
+  visit(view.scenegraph().root, false);
+  return found;
+}
+
 function hasInk(canvas) {
   const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   const colours = new Set();

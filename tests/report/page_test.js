@@ -15,7 +15,7 @@
   const change = (node, value) => { node.value = value; node.dispatchEvent(new Event('change')); };
   const selectOf = label => all('label').find(l => l.textContent.startsWith(label))?.querySelector('select');
   const boxesOf = kind => all(`[data-filter="${kind}"] input[type="checkbox"]`);
-  const reader = { expect, all, change, selectOf, settled };
+  const reader = { expect, all, change, selectOf, settled, boxesOf, drawAll };
   const visible = plot => !plot.figure.closest('[hidden]');
 
   try {
@@ -59,9 +59,15 @@
       expect(`${plot.title}: its label tells the keys`, plot.view.getAttribute('aria-label').startsWith(plot.title) &&
         plot.view.getAttribute('aria-label').includes('plus and minus zoom'));
       expect(`${plot.title}: says what is plotted`, plot.caption.textContent.length > 40);
+      const titles = Object.values(plot.drawn.columns);
+      expect(`${plot.title}: no two columns have one name`, new Set(titles).size === titles.length);
       expect(`${plot.title}: data`, plot.csv().split('\n').length > 2);
       expect(`${plot.title}: SVG`, (await plot.result.view.toSVG()).startsWith('<svg'));
       expect(`${plot.title}: PNG`, (await plot.result.view.toImageURL('png')).startsWith('data:image/png'));
+      const names = legendLabels(plot.result.view);
+      expect(`${plot.title}: names in the legend are whole under the mouse`, names.every(item =>
+        item.tooltip === item.text && item.mark.interactive && item.limit >= Math.min(170, 7 * item.text.length)) &&
+        (names.length > 0 || !plot.title.startsWith('Performance profile')));
       plot.toggleTable();
       expect(`${plot.title}: values`, plot.table.querySelectorAll('tbody tr').length > 0);
       plot.toggleTable();
@@ -74,13 +80,16 @@
     testLooks();
     testProfiles();
     await testPairProfiles(reader);
+    await testAgainstTables(reader);
     await testWorkUnits(reader);
+    testTables(reader);
     if (doc.bench_notes.length > 0) {
-      testBench();
+      testBench(reader);
       await testCurvesOfBench(reader);
     }
     await testChoices();
     await testFilters();
+    await testFollowing(reader);
     await testPlayer(reader);
     await testSchemes();
     testSorting();
@@ -114,32 +123,15 @@
       const drawn = new Set(plot.drawn.data.map(row => row.solver));
       expect(`${plot.title}: the solvers that apply`, drawn.size === applying.size &&
         [...drawn].every(solver => applying.has(solver)));
-      const ofKind = rows.filter(row => kindOf(row) === kind);
-      const numInstances = list => new Set(list.map(row => row.instanceId)).size;
+      const ofKind = rows.filter(row => kindOf(row) === kind && hasTarget(row.group, 1e-6));
+      const numInstances = list => new Set(list.map(row => row.group)).size;
       const isMissing = solver => numInstances(ofKind.filter(row => row.solver === solver)) < numInstances(ofKind);
-      const said = plot.caption.textContent.match(/Not run on all(.*)[.] Filter/)?.[1] ?? '';
+      const said = plot.caption.textContent.match(/whose cost is known, all \d+, but (.*?)\.( |$)/)?.[1] ?? '';
       expect(`${plot.title}: says who was not run on all`,
-        [...drawn].every(solver => isMissing(solver) === said.includes(` ${solver} on `)));
+        [...drawn].every(solver => isMissing(solver) === ` ${said}`.includes(` ${solver} on `)));
     }
     expect('a profile for each kind of parameters', kinds.every(kind =>
       allPlots.some(plot => plot.title.startsWith(`Performance profile, ${kind} parameters`))));
-  }
-
-  // Whoever comes to the best minimum has come to its own one.
-  function testBench() {
-    expect('the notes are there', document.querySelector('#notes_of_the_benchmark').textContent
-      .includes('cells are finished'));
-    const shares = (what, basin) => allPlots.filter(plot => plot.title.startsWith(what) && plot.title.endsWith(basin))
-      .map(plot => new Map((plot.drawn.data ?? []).map(row => [row.solver, row.py])));  // the last of each
-    const best = shares('Runtime distribution', 'best basin'), own = shares('Runtime distribution', 'own basin');
-    const basins = linesOf('table.csv').filter(line => line.basin !== '');
-    const kinds = new Set(rows.filter(row => row.parameter_kind && basins.some(line => line.problem === row.problem))
-      .map(row => row.parameter_kind));
-    expect('own basins stand beside best ones', best.length === kinds.size && own.length === kinds.size);
-    expect('own basins are reached as often, and more often where a run ends in a second one', own.every((of, k) =>
-      [...of].every(([solver, share]) => share >= (best[k].get(solver) ?? 0))) &&
-      basins.some(line => Number(line.basin) > 1) ===
-        own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0))));
   }
 
   async function testZoom() {
@@ -162,18 +154,21 @@
 
   async function testChoices() {
     const plot = allPlots.find(p => p.title === 'Convergence');
+    expect('profiles begin with evaluations', selectOf('Measured by').value === 'evaluations');
     for (const along of [...selectOf('Along').options].map(option => option.value).reverse()) {
       change(selectOf('Along'), along);
       await drawAll();
       const number = plot.drawn.data?.length ?? 0;
-      expect(`convergence along ${along}`, number > 0 && plot.caption.textContent.includes(kAlong[along].title));
+      // Where all runs overlapped there is no time to draw.
+      const isKnown = !kAlong[along].isTime || rows.some(row => row.group === 0 && traceOf(row) && !isOverlapped(row));
+      expect(`convergence along ${along}`, (number > 0) === isKnown && plot.caption.textContent.includes(kAlong[along].title));
       for (const each of allPlots.filter(p => visible(p) && p.drawn.zooms && selectOf('Along').closest('section').contains(p.figure))) {
         expect(`${each.title} along ${along}: names of axes are whole`, areTitlesWhole(each));
       }
       const isLeftOut = rows.some(row => isOverlapped(row) && row.group === 0 && traceOf(row));
       if (kAlong[along].isTime && isLeftOut) {
         expect('overlapped runs are left out, and that is said', plot.caption.textContent.includes('overlapped') &&
-          plot.drawn.data.every(point => !rows.some(row => row.key === point.key && isOverlapped(row))));
+          (plot.drawn.data ?? []).every(point => !rows.some(row => row.key === point.key && isOverlapped(row))));
       }
     }
     for (const up of ['excess', 'energy', 'gradient', 'gap']) {

@@ -40,9 +40,12 @@ async function testPairProfiles({ expect, change, selectOf }) {
     const [a, b] = chosenPair(plot);
     const names = namesOf(plot), kind = plot.title.match(/(\w+) parameters/)?.[1];
     const some = names.some((x, k) => names.slice(k + 1).some(y =>
-      expectedCounts([x, y], kind, 'iteration', '1e-6').instances > 0));
+      expectedCounts([x, y], kind, selectOf('Measured by').value, selectOf('Solved means').value).instances > 0));
     expect(`${plot.title}: begins with two`, a !== '' && b !== '' && a !== b && some === Boolean(plot.drawn.spec) &&
       (plot.drawn.data ?? []).every(row => row.solver === a || row.solver === b));
+    // Not with one that comes nowhere, as one that crashes, where two others do.
+    const counts = pairCounts(plot);
+    if (doc.name === 'jobs') expect(`${plot.title}: begins with two that come there`, counts.instances > 0 && a !== 'faulty' && b !== 'faulty');
     expect(`${plot.title}: solvers can be chosen by the keyboard`,
       [...plot.figure.querySelectorAll('select')].every(node => { node.focus(); return document.activeElement === node; }));
     change(plot.figure.querySelector('select'), b);
@@ -75,32 +78,39 @@ async function testPairProfiles({ expect, change, selectOf }) {
     const runsOf = new Map();
     raw.forEach((row, k) => {
       if (row.stop === 'skipped' || (kind && kindOfProblem.get(row.problem) !== kind)) return;
-      const id = ['problem', 'terms', 'data_seed', 'start_seed', 'seed', 'repetition'].map(name => row[name]).join('|');
+      const { minimum } = doc.groups[rows[k].group];
+      const fall = raw.find((other, j) => rows[j].group === rows[k].group && isNumber(other.start_energy))?.start_energy - minimum;
+      if (target !== 'stop' && !(Number(target) * fall > 1000 * Number.EPSILON * Math.abs(minimum))) return;
+      const id = ['problem', 'terms', 'data_seed', 'start_seed', 'seed'].map(name => row[name]).join('|');
       if (!runsOf.has(id)) runsOf.set(id, {});
-      runsOf.get(id)[row.solver] = { ...row, verdict: rows[k].verdict };
+      (runsOf.get(id)[row.solver] ??= []).push({ ...row, verdict: rows[k].verdict });
     });
     for (const runs of runsOf.values()) {
       const [a, b] = pair.map(solver => runs[solver]);
-      const hasMinima = Object.values(runs).some(run => run.basin >= 1);
-      if (!a || !b || (hasMinima && (!a.basin || a.basin !== b.basin))) continue;
-      const [x, y] = [a, b].map(run => expectedCost(run, measure, target));
+      const hasMinima = Object.values(runs).flat().some(run => run.basin >= 1);
+      if (!a || !b || (hasMinima && (!a[0].basin || a[0].basin !== b[0].basin))) continue;
+      const [x, y] = [a, b].map(some => medianOf(some.map(run => expectedCost(run, measure, target))));
       counts.instances += 1;
       counts[x === y ? (x === Infinity ? 'neither' : 'equal') : x < y ? 'first' : 'second'] += 1;
     }
     return counts;
+  }
+  function medianOf(costs) {
+    costs.sort((x, y) => Math.sign(x - y) || 0);
+    return (costs[Math.floor((costs.length - 1) / 2)] + costs[Math.floor(costs.length / 2)]) / 2;
   }
   function expectedCost(run, measure, target) {
     if (target === 'stop') {
       const calls = run.energy_calls + run.gradient_calls + run.jacobian_calls + run.products;
       return run.verdict === 'reached' ? Math.max(1, measure === 'iteration' ? run.iterations : calls) : Infinity;
     }
-    const trace = traces()[run.key], place = -Math.round(Math.log10(Number(target))) - 1;
+    const trace = traces()[run.key], place = doc.targets.indexOf(Number(target));
     const value = trace && run.verdict !== 'refuted'
       ? (trace[8] ?? trace[7])[measure === 'iteration' ? 0 : 1][place] : null;
     return value === null ? Infinity : Math.max(1, value);
   }
 
-  // A row of its table is of one kind of parameters, and of medians over repetitions, which are alike.
+  // A row of its table is of one kind of parameters, and of medians over repetitions.
   async function testAgainstBench() {
     change(selectOf('Measured by'), 'evaluations');
     change(selectOf('Solved means'), '0.001');
@@ -113,7 +123,6 @@ async function testPairProfiles({ expect, change, selectOf }) {
     expect('each pair of bench can be compared', known.every(row =>
       usable.some(({ kind, first, second }) => kind === row.kind && first === row.first && second === row.second)));
     if (isOfSuite) expect('some pairs of bench are close', close.length > 0 && tried.length > 5);
-    const repetitions = new Set(raw.map(row => row.repetition)).size;
     for (const row of tried) {
       const sum = { first: 0, second: 0, equal: 0, neither: 0, instances: 0 };
       const withinTwo = [0, 0];
@@ -129,20 +138,71 @@ async function testPairProfiles({ expect, change, selectOf }) {
       }
       const names = { first: 'first_less', second: 'second_less', equal: 'equal', neither: 'neither', instances: 'instances' };
       expect(`${row.kind}, ${row.first} and ${row.second} as in pairs.csv`, Object.entries(names).every(([name, column]) =>
-        sum[name] === repetitions * Number(row[column])));
+        sum[name] === Number(row[column])));
       expect(`${row.kind}, ${row.first} and ${row.second}: profiles at 2 as in pairs.csv`, ['first_at_2', 'second_at_2']
         .every((column, k) => Math.abs(withinTwo[k] / sum.instances - Number(row[column])) < 1e-4));
     }
   }
 }
 
+// How many instances a solver brings to each target of the suite, as solvers.csv has it.
+async function testAgainstTables({ expect, change, selectOf }) {
+  const lines = linesOf('solvers.csv');
+  if (lines.length === 0) return;
+  const refuted = new Set(rows.filter(row => row.verdict === 'refuted').map(row => row.solver));
+  const usual = selectOf('Solved means').value;
+  const names = [...selectOf('Solved means').options].filter(option => option.textContent.endsWith('(of the suite)'));
+  const nameOfTable = target => Number(target) === 0 ? 'noise floor' : `gap ${Number(target)}`;
+  const ofTable = name => name === 'noise floor' ? name : `gap ${Number(name.slice(4))}`;
+  expect('the targets of the suite are offered', new Set(lines.map(line => ofTable(line.target))).size <= names.length &&
+    lines.every(line => names.some(option => nameOfTable(option.value) === ofTable(line.target))));
+  for (const option of names) {
+    change(selectOf('Solved means'), option.value);
+    const here = lines.filter(line => ofTable(line.target) === nameOfTable(option.value) && !refuted.has(line.solver));
+    for (const plot of allPlots.filter(p => /^(Performance|Data) profile/.test(p.title) && !p.title.includes('own basin'))) {
+      await plot.draw();
+      const kind = plot.title.match(/(\w+) parameters/)?.[1];
+      const last = new Map((plot.drawn.data ?? []).map(row => [row.solver, row.py]));
+      for (const line of here.filter(one => kind === undefined || one.kind === kind)) {
+        const ran = Number(line.instances) - Number(line.not_run);
+        expect(`${plot.title}, ${option.textContent}: ${line.solver} comes there on ${line.solved} of ${ran}`,
+          plot.caption.textContent.includes(`share of ${counted(Number(line.instances), 'instance')}`) &&
+          (ran === 0 || Math.abs((last.get(line.solver) ?? NaN) - Number(line.solved) / ran) < 1e-9));
+      }
+    }
+  }
+  change(selectOf('Solved means'), usual);
+}
+
+// Whoever comes to the best minimum has come to its own one.
+function testBench({ expect }) {
+  expect('the notes are there', document.querySelector('#notes_of_the_benchmark').textContent
+    .includes('cells are finished'));
+  const shares = (what, basin) => allPlots.filter(plot => plot.title.startsWith(what) && plot.title.endsWith(basin))
+    .map(plot => new Map((plot.drawn.data ?? []).map(row => [row.solver, row.py])));  // the last of each
+  const best = shares('Runtime distribution', 'best basin'), own = shares('Runtime distribution', 'own basin');
+  const lines = linesOf('table.csv');
+  expect('solvers and problems have the order of the suite, as in the tables',
+    [['solver', allSolvers], ['problem', allProblems]].every(([column, all]) =>
+      inOrder(lines.map(line => line[column])).join() === all.join()));
+  const basins = lines.filter(line => line.basin !== '');
+  const kinds = new Set(rows.filter(row => row.parameter_kind && basins.some(line => line.problem === row.problem))
+    .map(row => row.parameter_kind));
+  expect('own basins stand beside best ones', best.length === kinds.size && own.length === kinds.size);
+  expect('own basins are reached as often, and more often where a run ends in a second one', own.every((of, k) =>
+    [...of].every(([solver, share]) => share >= (best[k].get(solver) ?? 0))) &&
+    basins.some(line => Number(line.basin) > 1) ===
+      own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0))));
+}
+
 // Work units and basins, which the rows of bench do not have, are those of its table.
 async function testWorkUnits({ expect, change, selectOf }) {
   const offered = label => [...selectOf(label).options].some(option => option.value === 'work_units');
-  const table = doc.tables.find(({ name, columns }) => name === 'table.csv' && columns.includes('work_units'));
+  // All runs may have overlapped, and then no line has any.
+  const hasSome = linesOf('table.csv').some(line => (line.work_units ?? '') !== '');
   expect('work units are offered where there are some', ['Along', 'Measured by'].every(label =>
-    offered(label) === Boolean(table)));
-  if (!table) return;
+    offered(label) === hasSome));
+  if (!hasSome) return;
   const fields = ['problem', 'terms', 'data_seed', 'start_seed', 'solver', 'seed'];
   const idOf = row => fields.map(field => row[field]).join('|');
   const lines = new Map(linesOf('table.csv').map(line => [idOf(line), line]));

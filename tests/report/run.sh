@@ -18,14 +18,15 @@ browser() {
 # with_tests PAGE: the page with watch.js in front of all and the tests behind all.
 with_tests() {
   awk -v watch="$here/watch.js" -v looks="$here/looks.js" -v pairs="$here/profile_test.js" \
-    -v player="$here/player_test.js" -v panels="$here/panel_test.js" -v test="$here/page_test.js" '
+    -v player="$here/player_test.js" -v panels="$here/panel_test.js" \
+    -v filters="$here/filter_test.js" -v test="$here/page_test.js" '
     function put(file,  line) {
       print "<script>"
       while ((getline line < file) > 0) print line
       close(file)
       print "</script>"
     }
-    $0 == "</body>" { put(looks); put(pairs); put(player); put(panels); put(test) }
+    $0 == "</body>" { put(looks); put(pairs); put(player); put(panels); put(filters); put(test) }
     { print }
     $0 == "<head>" { put(watch) }' "$1"
 }

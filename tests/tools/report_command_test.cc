@@ -101,9 +101,9 @@ TEST(ReportCommand, TheProgramHoldsTheFilesOfThePageAsTheyStand) {
   const std::string page = ReadFile(folder / "report.html");
   const std::string source = std::string(BATTEN_SOURCE_DIR) + "/tools/report/";
   for (const char* name :
-       {"report.css", "data.js", "charts.js", "plots.js", "profiles.js", "tables.js", "sections.js",
-        "folder.js", "player.js", "report.js", "vendor/vega.min.js", "vendor/vega-lite.min.js",
-        "vendor/vega-embed.min.js"}) {
+       {"report.css", "data.js", "charts.js", "plots.js", "costs.js", "profiles.js", "pairs.js",
+        "tables.js", "sections.js", "folder.js", "player.js", "report.js", "vendor/vega.min.js",
+        "vendor/vega-lite.min.js", "vendor/vega-embed.min.js"}) {
     const std::string text = ReadFile(source + name);
     EXPECT_GT(text.size(), 1000u) << name;
     EXPECT_NE(page.find(text), std::string::npos) << name;

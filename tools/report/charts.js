@@ -15,7 +15,7 @@ function vegaConfig() {
             labelFontSize: 12, titleFontSize: kTitleSize, titleFontWeight: 'normal', labelOverlap: true },
     // There it is whole however wide the numbers of the other axis are; in the middle it is not.
     axisX: { titleAnchor: 'end' },
-    legend: { labelColor: text, titleColor: text, labelFontSize: 12, labelLimit: 230,
+    legend: { labelColor: text, titleColor: text, labelFontSize: 12,
               symbolStrokeWidth: 2 },
     header: { labelColor: text, titleColor: text, labelFontSize: 12 },
     view: { stroke: line }, text: { color: text },
@@ -84,7 +84,7 @@ class Plot {
     const spec = { $schema: 'https://vega.github.io/schema/vega-lite/v6.json', ...this.drawn.spec,
                    description: this.label, datasets: { rows: this.drawn.data, ...this.drawn.more } };
     this.result = await vegaEmbed(this.view, spec, {
-      actions: false, config: vegaConfig(), renderer: 'canvas', ast: false,
+      actions: false, config: vegaConfig(), renderer: 'canvas', ast: false, patch: withWholeNames,
       tooltip: { theme: scheme === 'dark' ? 'dark' : 'light' },
       loader: { load: () => Promise.reject(new Error('this page loads nothing')) },
     });
@@ -164,6 +164,17 @@ class Plot {
   }
 }
 
+// Names in legends, which may be cut, are whole under the mouse: Vega-Lite has no word for this that the
+// legends of layers could share.
+function withWholeNames(spec) {
+  for (const legend of spec.legends ?? []) {
+    const labels = (legend.encode ??= {}).labels ??= {};
+    labels.interactive = true;
+    labels.update = { ...labels.update, tooltip: { signal: labels.update?.text?.signal ?? 'datum.label' } };
+  }
+  return spec;
+}
+
 // --- Parts of specifications.
 const axisOf = (field, title, isLog, extra = {}) => ({
   field, type: 'quantitative', title,
@@ -199,17 +210,22 @@ function looksOf(solvers, channel, looks) {
   return { field: 'solver', type: 'nominal', title: null,
            scale: { domain: solvers, range: solvers.map(solver => lookOf(solver, looks)) } };
 }
-// So many names stand side by side, each behind its line: 7 pixels a letter.
+// So many names stand side by side, each behind its line: 7 pixels a letter. A name that is longer than
+// its column is cut, and whole under the mouse.
+const kLegendSymbol = 50;  // pixels before a name
+const kWidestName = 400;
 function legendColumns(solvers, width) {
   const longest = solvers.reduce((most, solver) => Math.max(most, solver.length), 0);
-  return Math.max(1, Math.min(solvers.length, Math.floor(width / Math.min(280, 55 + 7 * longest))));
+  return Math.max(1, Math.min(solvers.length, Math.floor(width / (kLegendSymbol + Math.min(kWidestName, 5 + 7 * longest)))));
 }
+const labelLimit = (solvers, width) => Math.floor(width / legendColumns(solvers, width)) - kLegendSymbol;
 const legendHeight = (solvers, width) => 25 * Math.ceil(solvers.length / legendColumns(solvers, width));
 function colours(solvers, width) {
   const columns = legendColumns(solvers, width);
   return { field: 'solver', type: 'nominal', title: null,
            scale: { domain: solvers, range: solvers.map(colourOf) },
-           legend: { orient: 'bottom', columns, symbolType: 'stroke', symbolSize: 900 } };
+           legend: { orient: 'bottom', columns, symbolType: 'stroke', symbolSize: 900,
+                     labelLimit: labelLimit(solvers, width) } };
 }
 // Drag moves, Ctrl + wheel zooms: the wheel alone goes on scrolling the page.
 const kZoom = { name: 'zoom', bind: 'scales',

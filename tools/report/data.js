@@ -10,7 +10,6 @@ const curves = later('curves-data');
 const kReached = new Set(['solved', 'gradient_small', 'step_small', 'rounding_floor']);
 // A line search or a library ended the run: reached where |g| is small all the same.
 const kReachedIfSmall = new Set(['line_search_ended', 'native_stop']);
-const kTargets = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 
 const isNumber = value => typeof value === 'number' && Number.isFinite(value);
 
@@ -37,8 +36,6 @@ function derive(row, index) {
   // As in the tables of bench: the time of one evaluation of E, measured on the instance, is the unit.
   const unit = doc.groups[row.group].unit_seconds;
   if (isNumber(unit)) row.work_units = isNumber(row.seconds) ? row.seconds / unit : null;
-  // The same instance in another repetition or with another seed is another run to solve.
-  row.instanceId = JSON.stringify([row.group, row.start_seed, row.seed, row.repetition]);
   return row;
 }
 
@@ -64,7 +61,7 @@ const allSolvers = inOrder(rows.map(row => row.solver));
 const allTerms = inOrder(rows.flatMap(row => row.termList));
 const allExperiments = inOrder(rows.map(row => row.experiment ?? ''));  // of reproductions
 const isOverlapped = row => row.overlapped === true;
-const hasWorkUnits = rows.some(row => isNumber(row.work_units));
+const hasWorkUnits = rows.some(row => isNumber(row.work_units) && !isOverlapped(row));
 
 const filters = {
   problem: new Set(allProblems), solver: new Set(allSolvers), term: new Set(allTerms),
@@ -110,9 +107,11 @@ function median(values) {
 const textOf = value =>
   value !== null && typeof value === 'object' ? JSON.stringify(value) : String(value ?? '');
 
+const severalNames = new Set(['terms', 'data_seed', 'start_seed'].filter(name =>
+  new Set(doc.groups.map(group => group[name])).size > 1));
 function groupName(index) {
   const group = doc.groups[index];
-  const several = name => new Set(doc.groups.map(other => other[name])).size > 1;
+  const several = name => severalNames.has(name);
   const parts = [String(group.problem ?? '(no problem)')];
   if (several('terms') && group.terms) parts.push(String(group.terms));
   for (const [field, word] of [['data_seed', 'data seed'], ['start_seed', 'start']]) {

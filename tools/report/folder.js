@@ -1,5 +1,9 @@
 // The sections that are not made of runs: verdicts on claims, pictures, tables, the build.
 
+// Said where the page also has runs, which the filters choose from.
+const ofAllRuns = () => rows.length === 0 ? null
+  : element('p', { class: 'quiet' }, 'Of all runs of the folder: the filters do not change these.');
+
 // The pages of reproductions; returns the pictures and tables that none of them shows.
 function addPages() {
   const pictures = new Map(doc.pictures.map(picture => [picture.name, picture]));
@@ -11,16 +15,17 @@ function addPages() {
 function addFolderSections({ pictures, tables }) {
   if (doc.bench_notes.length > 0) {
     const points = doc.bench_notes.filter(line => line.startsWith('- '));
-    addSection('Notes of the benchmark', element('div', {},
+    addSection('Notes of the benchmark', element('div', {}, ofAllRuns(),
       ...doc.bench_notes.filter(line => !line.startsWith('- ')).map(line => element('p', {}, line)),
       element('ul', {}, ...points.map(line => element('li', {}, line.slice(2))))));
   }
   if (pictures.size > 0) {
-    addSection('Pictures', element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
-      figureOf(picture, 'As drawn when the folder was written. Data: what is plotted, in blocks, a line each.'))));
+    addSection('Pictures', element('div', {}, ofAllRuns(),
+      element('div', { class: 'plots' }, ...[...pictures.values()].map(picture =>
+        figureOf(picture, 'As drawn when the folder was written. Data: what is plotted, in blocks, a line each.')))));
   }
   if (tables.size > 0) {
-    addSection('Tables', element('div', {}, ...[...tables.values()].map(table =>
+    addSection('Tables', element('div', {}, ofAllRuns(), ...[...tables.values()].map(table =>
       element('details', { open: tables.size <= 3 }, element('summary', {}, table.name),
               folderTable(table)))));
   }

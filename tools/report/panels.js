@@ -13,13 +13,20 @@ const kPanelStyles = {
 };
 const groupOfColor = color => Math.floor(color / 8) % kDashes.length;
 
+// A line of many that is a solver's looks as in all other plots of the page.
+function lookOfLine({ style, label, color }) {
+  if (style === 'one_of_many' && allSolvers.includes(label)) {
+    return { colour: colourOf(label), dash: lookOf(label, kDashes), shape: lookOf(label, kShapes), isMarked: isMarked(label) };
+  }
+  return { colour: kPanelPalettes[scheme][((color % 8) + 8) % 8],
+           dash: style === 'dashed' ? [6, 4] : style === 'one_of_many' ? kDashes[groupOfColor(color)] : [1, 0],
+           shape: kShapes[groupOfColor(color)], isMarked: groupOfColor(color) > 0 };
+}
 // Series by their place: names may be empty or stand twice.
 function looksOfSeries(panel) {
   return panel.series.map((series, k) => ({
     id: String(k), style: series.style, name: series.label || `line ${k + 1}`, isNamed: series.label !== '',
-    colour: kPanelPalettes[scheme][((series.color % 8) + 8) % 8],
-    dash: series.style === 'dashed' ? [6, 4] : series.style === 'one_of_many' ? kDashes[groupOfColor(series.color)] : [1, 0],
-    shape: kShapes[groupOfColor(series.color)], ...kPanelStyles[series.style],
+    ...lookOfLine(series), ...kPanelStyles[series.style],
   }));
 }
 
@@ -32,7 +39,7 @@ function panelRows(panel, looks) {
       ? [{ id: String(k), series: looks[k].name, style: series.style, order, at: nameAt(px), px, py: ys[order] }] : []);
   return {
     data: panel.series.flatMap((series, k) => points(series, k, series.x, series.y)),
-    marks: panel.series.flatMap((series, k) => series.style !== 'one_of_many' || groupOfColor(series.color) === 0 ? []
+    marks: panel.series.flatMap((series, k) => series.style !== 'one_of_many' || !looks[k].isMarked ? []
       : points(series, k, series.mark_x ?? [], series.mark_y ?? []).map(point => ({ ...point, shape: looks[k].shape }))),
   };
 }
@@ -82,7 +89,7 @@ function panelLegend(panel, looks, width) {
   const per = value => ({ value: { signal: `${JSON.stringify(looks.map(value))}[datum.value]` } });
   return {
     orient: 'bottom', columns: legendColumns(named.map(look => look.name), width), values: named.map(look => look.id),
-    symbolSize: 900,
+    symbolSize: 900, labelLimit: labelLimit(named.map(look => look.name), width),
     labelExpr: `${JSON.stringify(looks.map(look => look.name))}[datum.value]`,
     encoding: { symbols: {
       shape: per(look => (look.line ? kLinePath : '') + (look.dot ? kDotPath : look.ring ? kRingPath : '')),

@@ -105,7 +105,7 @@ function playerSpec(width, panels, box) {
 
 class Player {
   constructor(groups) {
-    this.state = { group: groups[0], iteration: 0, polygon: false, zoom: 1, x: 0, y: 0 };
+    this.state = { group: undefined, iteration: 0, polygon: false, zoom: 1, x: 0, y: 0 };
     this.timer = null;
     this.plot = new Plot('Curves side by side', width => this.build(width));
     this.plot.setDomains = () => Promise.resolve();
@@ -116,16 +116,25 @@ class Player {
                                      oninput: () => this.show(Number(this.slider.value)) });
     this.label = element('output', {});
     this.playButton = this.button('Play', () => this.togglePlay());
-    this.select = select('Problem', groups.map(k => [String(k), groupName(k)]), String(groups[0]),
-                         value => { this.state.group = Number(value); this.restart(); });
-    this.node = element('div', {},
-      element('div', { class: 'row' }, this.select,
+    this.choice = groupChoice(groups, group => { this.state.group = group; this.restart(); });
+    this.none = element('p', { class: 'none' }, 'No run that passes the filters has kept its iterates.');
+    this.shown = element('div', {},
+      element('div', { class: 'row' }, this.choice.label,
         check('Control polygons', false, on => { this.state.polygon = on; this.plot.refresh(); })),
       element('div', { class: 'row' }, this.button('First', () => this.show(0)),
         this.button('Back', () => this.step(-1)), this.playButton,
         this.button('Next', () => this.step(1)), this.button('Last', () => this.show(this.last())),
         this.slider, this.label),
       this.plot.figure);
+    this.node = element('div', {}, this.none, this.shown);
+  }
+  // Offers the problems of which a run passes the filters, and shows another where the shown one is gone.
+  follow() {
+    const passing = new Set(chosen.filter(row => row.key in curves().runs).map(row => row.group));
+    this.state.group = this.choice.offer(passing);
+    this.none.hidden = passing.size > 0;
+    this.shown.hidden = passing.size === 0;
+    this.restart();
   }
   button(text, onclick) { return element('button', { type: 'button', onclick }, text); }
 
@@ -185,7 +194,8 @@ class Player {
   }
   build(width) {
     const all = this.runs(), panels = this.panels();
-    const setting = panels.length > 0 ? settingOf(panels[0]) : undefined;
+    if (panels.length === 0) return { caption: this.none.textContent };
+    const setting = settingOf(panels[0]);
     const caption = (setting ? 'Curve and data points (dots)' : 'Control polygon (the folder has no ' +
       'curves/NAME.json to draw the curve by)') +
       ' of each run at the chosen iteration, or at the last one before it that the page has; a run ' +
@@ -194,7 +204,6 @@ class Player {
         ? `${setting.points.length} of ${setting.num_points} data points are drawn. ` : '') +
       'The first two coordinates are drawn.' +
       excludedText([[all.length - panels.length, `beyond the first ${kMostPanels}: use the filters`]]);
-    if (panels.length === 0) return { caption };
     const box = this.zoomed(boxOf(setting ? setting.points
       : controlPoints(curves().runs[panels[0].key], 0)));
     return { caption, data: this.rows(), spec: playerSpec(width, panels, box), zooms: false,
@@ -219,5 +228,5 @@ function addPlayer() {
     return;
   }
   const player = new Player(groups);
-  addSection('Player', player.node, () => player.restart());
+  addRunSection('Player', player.node, () => player.follow());
 }

@@ -44,6 +44,7 @@ function convergencePlot(settings) {
   return new Plot('Convergence', width => {
     const along = kAlong[settings.along], up = kUp[settings.up];
     const all = chosen.filter(row => row.group === settings.group);
+    if (all.length === 0) return { caption: 'No run of this problem passes the filters.' };
     const group = doc.groups[settings.group] ?? {};
     const withTrace = all.filter(traceOf);
     const { timed, left } = withCosts(withTrace, settings.along);
@@ -55,8 +56,7 @@ function convergencePlot(settings) {
     const star = group.direct ? 'of the direct answer'
       : group.basins ? 'the best minimum that some run from this start leads to'
       : 'the lowest that any run of the folder saw';
-    const caption = `${up.title} against ${along.title}, each run of ` +
-      `${all.length > 0 ? groupName(settings.group) : 'no problem'} a line. ` +
+    const caption = `${up.title} against ${along.title}, each run of ${groupName(settings.group)} a line. ` +
       `E* = ${show(group.minimum, 8)}, ${star}. ` +
       'Traces are thinned to 64 rows a run.' + noteOf(settings.along) +
       (atEdge ? ' What is at 0 along is drawn at the left edge.' : '') +
@@ -71,11 +71,11 @@ function convergencePlot(settings) {
     return {
       caption, data, zooms: true, logs: { px: logX, py: up.log },
       columns: { problem: 'problem', solver: 'solver', key: 'key', iteration: 'iteration',
-                 at: along.title, py: up.title },
+                 ...(settings.along === 'iteration' ? {} : { at: along.title }), py: up.title },
       spec: lineSpec({ width, height: heightFor(width, solvers), solvers, data, x, y, tooltip: [
         { field: 'solver', title: 'solver' }, { field: 'label', title: 'run' },
         { field: 'iteration', title: 'iteration' },
-        { field: 'at', title: along.title, format: '.5~g' },
+        ...(settings.along === 'iteration' ? [] : [{ field: 'at', title: along.title, format: '.5~g' }]),
         { field: 'py', title: up.title, format: '.5~g' }] }),
     };
   });
@@ -118,6 +118,7 @@ function endPlot(settings) {
     const cost = settings.along === 'iteration' ? 'iterations' : settings.along;
     const ran = chosen.filter(row => row.verdict !== 'skipped');
     const { timed, left } = withCosts(ran, settings.along);
+    if (chosen.length === 0) return { caption: 'No run passes the filters.' };
     const data = timed.map(row => ({ ...pick(row, ['problem', 'solver', 'stop', 'key']),
                                      px: row[cost], py: row.gradient_norm / row.start_gradient_norm }))
       .filter(row => row.px > 0 && row.py > 0 && isNumber(row.px) && isNumber(row.py));

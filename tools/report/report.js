@@ -83,6 +83,16 @@ function addSection(title, node, updateNode = () => {}) {
   sections.push({ title, node, update: updateNode });
 }
 
+// A section of runs: where none passes the filters, a sentence stands in its place.
+function addRunSection(title, node, updateNode) {
+  const none = element('p', { class: 'none' }, 'No run passes the filters.');
+  addSection(title, element('div', {}, none, node), () => {
+    none.hidden = chosen.length > 0;
+    node.hidden = chosen.length === 0;
+    updateNode();
+  });
+}
+
 function update() {
   applyFilters();
   const filtered = document.getElementById('num-chosen');

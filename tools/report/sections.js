@@ -3,7 +3,8 @@
 // A section whose content is made anew from the rows that pass the filters; only once it is seen.
 function addTableSection(title, fill) {
   const box = element('div');
-  addSection(title, box, () => box.replaceChildren(...[fill()].flat().filter(Boolean)));
+  addRunSection(title, box, () =>
+    box.replaceChildren(...(chosen.length > 0 ? [fill()].flat().filter(Boolean) : [])));
 }
 const verdictWords = { reached: 'reached', failed: 'failed', refuted: 'refuted', skipped: 'skipped' };
 const verdictCell = row => element('span', {
@@ -61,43 +62,39 @@ function addConvergence() {
   const end = endPlot(settings);
   const changed = () => { plot.refresh(); end.refresh(); };
   const set = name => value => { settings[name] = value; changed(); };
-  const problem = select('Problem', doc.groups.map((_, k) => [String(k), groupName(k)]), '0',
-                         value => { settings.group = Number(value); plot.refresh(); });
-  const controls = element('div', { class: 'row' }, problem,
+  const problem = groupChoice(doc.groups.map((_, k) => k), group => { settings.group = group; plot.refresh(); });
+  const controls = element('div', { class: 'row' }, problem.label,
     select('Along', measures, settings.along, set('along')),
     select('Up', [['gap', 'gap'], ['excess', 'E − E*'], ['energy', 'E'], ['gradient', '|g|']],
            settings.up, set('up')),
     check('Logarithmic along', true, set('logX')));
   const hint = 'Drag to move, Ctrl and wheel or the buttons to zoom, double click to see all. ' +
     'With the keyboard: focus a plot, then + − 0 and the arrows; Values lists what is drawn.';
-  addSection('Convergence', element('div', {},
+  addRunSection('Convergence', element('div', {},
     hasTraces ? null : element('p', {}, 'The folder has no traces (traces/KEY.csv).'),
     controls, element('p', { class: 'quiet' }, hint), plot.figure, end.figure),
   () => {
-    const node = problem.querySelector('select');
-    const passing = new Set(chosen.map(row => String(row.group)));
-    for (const option of node.options) option.hidden = option.disabled = !passing.has(option.value);
-    if (passing.size > 0 && !passing.has(node.value)) {
-      node.value = [...passing][0];
-      settings.group = Number(node.value);
-    }
+    settings.group = problem.offer(new Set(chosen.map(row => row.group))) ?? settings.group;
     changed();
   });
 }
 
 function addProfiles() {
   const hasTraces = rows.some(traceOf);
-  const settings = { measure: 'iteration', target: hasTraces ? 1e-6 : 'stop' };
+  // The strictest gap of a suite, as in the pairs of bench.
+  const settings = { measure: 'evaluations', target: !hasTraces ? 'stop' : suiteTargets.findLast(gap => gap > 0) ?? 1e-6 };
   // Per kind of parameters; where there are several minima those to the own basin beside.
   const kinds = allKinds.map(kind => {
     const goals = hasBasins(kind) ? [false, true] : [false];
     return [...goals.map(own => profilePlot(settings, kind, own)),
+            ...goals.map(own => dataProfilePlot(settings, kind, own)),
             ...(hasTraces ? goals.map(own => runtimePlot(settings, kind, own)) : []),
             pairPlot(settings, kind)];
   });
   const refresh = () => kinds.flat().forEach(plot => plot.refresh());
   const targets = [['stop', 'what the run was asked for'],
-                   ...(hasTraces ? kTargets.map(t => [String(t), `gap ${t.toExponential()}`]) : [])];
+                   ...(hasTraces ? kTargets.map(target => [String(target), targetName(target) +
+                     (suiteTargets.includes(target) ? ' (of the suite)' : '')]) : [])];
   const controls = element('div', { class: 'row' },
     select('Measured by', measures.filter(([name]) => hasTraces || name !== 'cpu_seconds'),
            settings.measure, value => { settings.measure = value; refresh(); }),
@@ -105,38 +102,56 @@ function addProfiles() {
       settings.target = value === 'stop' ? value : Number(value);
       refresh();
     }));
-  const few = element('p', {}, 'Profiles need two problems or more.');
-  const box = element('div', {}, controls, ...kinds.map(plots =>
-    element('div', { class: 'plots' }, ...plots.map(plot => plot.figure))));
-  addSection('Profiles', element('div', {}, few, box), () => {
+  const few = element('p', { class: 'none' }, 'Profiles need two problems or more.');
+  const nones = allKinds.map(kind => element('p', { class: 'none' }, 'No run that passes the filters is of a solver that applies' +
+    (kind ? ` where parameters are ${kind}.` : '.')));
+  const boxes = kinds.map(plots => element('div', { class: 'plots' }, ...plots.map(plot => plot.figure)));
+  const box = element('div', {}, controls, ...allKinds.flatMap((_, k) => [nones[k], boxes[k]]));
+  addRunSection('Profiles', element('div', {}, few, box), () => {
     const isMany = new Set(chosen.map(row => row.group)).size >= 2;
     few.hidden = isMany;
     box.hidden = !isMany;
-    if (isMany) refresh();
+    allKinds.forEach((kind, k) => {
+      nones[k].hidden = instances(kind).length > 0;
+      boxes[k].hidden = !nones[k].hidden;
+    });
+    refresh();
   });
 }
 
+// What tells runs of one solver on one problem apart, where the runs of the folder differ in it.
+const apartColumns = [
+  { field: 'terms', title: 'terms', text: true }, { field: 'data_seed', title: 'data seed' },
+  { field: 'start_seed', title: 'start seed' }, { field: 'seed', title: 'seed of the solver' },
+  { field: 'repetition', title: 'repetition' },
+].filter(({ field }) => new Set(rows.map(row => textOf(row[field]))).size > 1);
+// Units stand in the names of columns: short, so that these are no taller than two lines.
+const kUnitNote = 'u is the unit of the data.';
+
 const kRunColumns = [
   { field: 'problem', title: 'problem', text: true }, { field: 'solver', title: 'solver', text: true },
-  { field: 'terms', title: 'terms', text: true }, { field: 'parameter_kind', title: 'parameters', text: true },
+  ...(apartColumns[0]?.field === 'terms' ? [] : [{ field: 'terms', title: 'terms', text: true }]), ...apartColumns,
+  { field: 'parameter_kind', title: 'parameters', text: true },
   { field: 'verdict', title: 'verdict', text: true, cell: verdictCell },
   { field: 'stop', title: 'stop', text: true }, { field: 'iterations', title: 'iterations' },
   { field: 'evaluations', title: 'evaluations' }, { field: 'work_units', title: 'work units' },
   { field: 'seconds', title: 'time (s)' },
-  { field: 'energy', title: 'E (unit of the data, squared)', digits: 6 },
-  { field: 'energy_at_foot_points', title: 'E at foot points (unit of the data, squared)', digits: 6 },
-  { field: 'gap', title: 'gap, no unit' }, { field: 'gradient_norm', title: '|g| (unit of the data)' },
-  { field: 'rms', title: 'rms distance (unit of the data)' },
-  { field: 'max', title: 'largest distance (unit of the data)' },
-  { field: 'basin', title: 'basin', text: true }, { field: 'length', title: 'length (unit of the data)' },
+  { field: 'energy', title: 'E (u²)', digits: 6 },
+  { field: 'energy_at_foot_points', title: 'E at foot points (u²)', digits: 6 },
+  { field: 'gap', title: 'gap' }, { field: 'gradient_norm', title: '|g| (u)' },
+  { field: 'rms', title: 'rms distance (u)' }, { field: 'max', title: 'largest distance (u)' },
+  { field: 'basin', title: 'basin', text: true }, { field: 'length', title: 'length (u)' },
   { field: 'turning', title: 'turning (rad)' }, { field: 'num_free_loops', title: 'free loops' },
 ];
 function runsContent() {
+  // Times beside others tell nothing; they stand among all fields of a run.
+  const list = chosen.map(row => isOverlapped(row) ? { ...row, seconds: null, work_units: null } : row);
   const used = kRunColumns.filter(column =>
-    chosen.some(row => row[column.field] !== null && row[column.field] !== undefined));
+    list.some(row => row[column.field] !== null && row[column.field] !== undefined));
+  const numOverlapped = chosen.filter(isOverlapped).length;
   const details = element('div', { 'aria-live': 'polite' });
   const showRow = row => {
-    const { termList, verdict, index, group, instanceId, options, ...fields } = row;
+    const { termList, verdict, index, group, options, ...fields } = row;
     const { notes, ...rest } = fields;
     details.replaceChildren(element('h3', { tabindex: -1 }, `${row.problem}: ${row.solver}`),
       element('p', {}, 'Options that really ran:'), definitions(options ?? {}),
@@ -146,9 +161,11 @@ function runsContent() {
     details.firstChild.focus();
   };
   const columns = [...used, { field: 'index', title: 'all', text: true, cell: row =>
-    element('button', { type: 'button', onclick: () => showRow(row),
+    element('button', { type: 'button', onclick: () => showRow(rows[row.index]),
                         'aria-label': `All of ${row.problem}, ${row.solver}` }, 'All') }];
-  return [sortableTable(columns, chosen, { name: 'runs', page: 20 }), details];
+  const caption = kUnitNote +
+    (numOverlapped > 0 ? ` Times leave out ${counted(numOverlapped, 'run')} that overlapped: other runs went on beside.` : '');
+  return [sortableTable(columns, list, { name: 'runs', page: 20 }), element('p', { class: 'quiet' }, caption), details];
 }
 
 function findingTexts(row) {
@@ -158,6 +175,12 @@ function findingTexts(row) {
     no_finite_end: 'its end is no finite number',
   };
   return Array.isArray(row.findings) ? row.findings.map(finding => texts[finding] ?? '') : [];
+}
+
+// Which limit cut a run off that says nothing itself.
+function limitText(row) {
+  const limit = { iteration_limit: [row.max_iterations, 'iterations'], time_limit: [row.max_seconds, 's of the solver'] }[row.stop];
+  return !row.message && isNumber(limit?.[0]) ? `cut off at its limit of ${show(limit[0])} ${limit[1]}` : '';
 }
 
 function failuresContent() {
@@ -173,9 +196,9 @@ function failuresContent() {
   const columns = [
     { field: 'problem', title: 'problem', text: true }, { field: 'solver', title: 'solver', text: true },
     { field: 'verdict', title: 'verdict', text: true, cell: verdictCell },
-    { field: 'stop', title: 'stop', text: true },
-    { field: 'why', title: 'message', text: true }, { field: 'key', title: 'log', text: true, cell: logCell }];
-  const why = row => [row.message, row.failure, row.disagreement, ...findingTexts(row)]
+    { field: 'stop', title: 'stop', text: true }, { field: 'why', title: 'message', text: true },
+    { field: 'key', title: 'log', text: true, cell: logCell }, ...apartColumns];
+  const why = row => [row.message, limitText(row), row.failure, row.disagreement, ...findingTexts(row)]
     .filter(Boolean).map(textOf).join('; ');
   const withWhy = some => some.map(row => ({ ...row, why: why(row) }));
   return [
@@ -203,18 +226,18 @@ function auditContent() {
     'shares no code with the solvers.';
   const columns = [
     { field: 'problem', title: 'problem', text: true }, { field: 'solver', title: 'solver', text: true },
-    { field: 'stop', title: 'claim (stop)', text: true },
+    ...apartColumns, { field: 'stop', title: 'claim (stop)', text: true },
     { field: 'says', title: 'audit', text: true, cell: row =>
       element('span', { class: row.verified ? 'good' : 'bad' }, row.says) },
-    { field: 'energy', title: 'E claimed (unit of the data, squared)', digits: 8 },
-    { field: 'audit_energy', title: 'E audited (unit of the data, squared)', digits: 8 },
-    { field: 'energy_off', title: 'difference over E, no unit', digits: 2 },
-    { field: 'gradient_norm', title: '|g| claimed (unit of the data)' },
-    { field: 'audit_gradient_norm', title: '|g| audited (unit of the data)' },
-    { field: 'gradient_floor', title: 'rounding floor of |g| (unit of the data)' },
+    { field: 'energy', title: 'E claimed (u²)', digits: 8 },
+    { field: 'audit_energy', title: 'E audited (u²)', digits: 8 },
+    { field: 'energy_off', title: 'difference over E', digits: 2 },
+    { field: 'gradient_norm', title: '|g| claimed (u)' },
+    { field: 'audit_gradient_norm', title: '|g| audited (u)' },
+    { field: 'gradient_floor', title: 'rounding floor of |g| (u)' },
     { field: 'failure', title: 'why', text: true }];
   return [element('p', {}, text),
-          audited.length > 0 ? sortableTable(columns, audited, { name: 'audit', page: 20 }) : null];
+          ...(audited.length > 0 ? [sortableTable(columns, audited, { name: 'audit', page: 20 }), element('p', { class: 'quiet' }, kUnitNote)] : [])];
 }
 
 function optionsContent() {

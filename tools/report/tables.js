@@ -1,5 +1,11 @@
 // Tables: sortable by each column, shown in pages, saved as CSV.
 
+// How many letters wide a title is in two lines.
+function lettersInTwoLines(title) {
+  const words = title.split(' '), length = some => some.join(' ').length;
+  return Math.min(...words.map((_, k) => Math.max(length(words.slice(0, k)), length(words.slice(k)))));
+}
+
 // columns: [{field, title, digits, text, cell(row)}]; numbers are aligned to the right.
 function sortableTable(columns, list, { page = 100, name = '' } = {}) {
   const state = { sorted: [...list], column: null, descending: false, shown: page };
@@ -10,6 +16,7 @@ function sortableTable(columns, list, { page = 100, name = '' } = {}) {
 
   const headers = columns.map(column => element('th', {
     scope: 'col', class: numeric.get(column) ? 'number' : null,
+    style: `min-width: calc(${lettersInTwoLines(column.title)}ch + 1.2rem)`,  // with the cell's own room
   }, element('button', { type: 'button', onclick: () => sortBy(column) }, column.title)));
 
   function sortBy(column) {
@@ -69,6 +76,20 @@ function select(label, options, value, onchange) {
     ...options.map(([name, text]) => element('option', { value: name }, text)));
   node.value = value;
   return element('label', {}, label + ' ', node);
+}
+// A choice among some of the groups: those are offered that pass the filters.
+function groupChoice(groups, onchange) {
+  const label = select('Problem', [], '', value => onchange(Number(value)));
+  const node = label.querySelector('select');
+  // The one that is chosen then: another where that of before does not pass, undefined where none does.
+  const offer = passing => {
+    const left = groups.filter(group => passing.has(group)), before = Number(node.value || -1);
+    node.replaceChildren(...left.map(group => element('option', { value: group }, groupName(group))));
+    const now = left.includes(before) ? before : left[0];
+    node.value = String(now ?? '');
+    return now;
+  };
+  return { label, offer };
 }
 function check(label, checked, onchange) {
   const node = element('input', { type: 'checkbox', checked, onchange: () => onchange(node.checked) });
