@@ -39,8 +39,10 @@ function testEnds({ expect }, drawn) {
     const far = Math.max(...data.map(point => Math.min(...curve.map(place => apart(place, point)))));
     const step = Math.max(...curve.slice(1).map((place, k) => apart(place, curve[k])));
     const { unit } = curves().runs[row.key], size = Math.max(...data.map(point => apart(point, data[0])));
+    // Of many data points the page has some, and perhaps not the farthest one.
+    const isWhole = settingOf(row).points.length === settingOf(row).num_points;
     const [least, most] = doc.name === 'made_up' ? [0, 0.05 * size]
-      : [row.max_orthogonal - unit, row.max_orthogonal + step / 2 + unit];
+      : [isWhole ? row.max_orthogonal - unit : 0, row.max_orthogonal + step / 2 + unit];
     expect(`the last curve of ${row.solver} is ${far} from the data, between ${least} and ${most}`,
       far >= least && far <= most);
   }
@@ -55,7 +57,7 @@ async function testCurvesOfBench({ expect, change, settled }) {
   }));
   const plot = playerPlot();
   const choice = document.querySelector('#player select');
-  expect('the player has all instances', choice.options.length === doc.groups.length);
+  expect('the player has all instances', choice.options.length === new Set(rows.filter(hasCurve).map(row => row.group)).size);
   for (const option of choice.options) {
     change(choice, option.value);
     await settled();

@@ -191,8 +191,9 @@ function testBench({ expect }) {
   expect('own basins stand beside best ones', best.length === kinds.size && own.length === kinds.size);
   expect('own basins are reached as often, and more often where a run ends in a second one', own.every((of, k) =>
     [...of].every(([solver, share]) => share >= (best[k].get(solver) ?? 0))) &&
-    basins.some(line => Number(line.basin) > 1) ===
-      own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0))));
+    (!isOfSuite || own.some((of, k) => [...of].some(([solver, share]) => share > (best[k].get(solver) ?? 0)))) &&
+    (basins.some(line => Number(line.basin) > 1) ||
+      own.every((of, k) => [...of].every(([solver, share]) => share === (best[k].get(solver) ?? 0)))));
 }
 
 // Work units and basins, which the rows of bench do not have, are those of its table.
@@ -233,7 +234,8 @@ async function testWorkUnits({ expect, change, selectOf }) {
   }));
   change(selectOf('Along'), 'iteration');
   const reached = rows.filter(row => costOf(row, 0.1, 'seconds', false) < Infinity);
-  const haveCome = rows.filter(row => row.verdict !== 'refuted' && traces()[row.key]?.[7][2][0] != null);
+  const place = doc.targets.indexOf(0.1);
+  const haveCome = rows.filter(row => row.verdict !== 'refuted' && traces()[row.key]?.[7][2][place] != null);
   expect('work units to a target', isMany(haveCome) && reached.length === haveCome.length && reached.every(row =>
-    isNear(costOf(row, 0.1, 'work_units', false) * unitOfLine(row), costOf(row, 0.1, 'seconds', false))));
+    lines.get(idOf(row)).work_units === '' || isNear(costOf(row, 0.1, 'work_units', false) * unitOfLine(row), costOf(row, 0.1, 'seconds', false))));
 }
