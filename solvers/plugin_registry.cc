@@ -46,22 +46,22 @@ std::vector<std::string> KnownProblems() {
 std::string PluginRegistry::WhyNotOptions() const {
   const auto named = [](const std::string& kind, const std::string& name,
                         const std::vector<OptionInfo>& options) {
-    const std::string why = WhyNoOptionList(options);
+    std::string why = WhyNoOptionList(options);
     return why.empty() ? why : "registers a " + kind + " " + name + ", which " + why;
   };
   for (const SolverEntry& entry : solvers_) {
-    const std::string why = named("solver", entry.info.name, entry.info.options);
+    std::string why = named("solver", entry.info.name, entry.info.options);
     if (!why.empty()) return why;
   }
   for (const CutRuleEntry& entry : cut_rules_) {
-    const std::string why = named("cut rule", entry.info.name, entry.info.options);
+    std::string why = named("cut rule", entry.info.name, entry.info.options);
     if (!why.empty()) return why;
   }
   for (const auto& term : terms_) {
     // Those that every term has stand behind its own.
     std::vector<OptionInfo> options = term->Info().options;
     for (OptionInfo& common : CommonTermOptions()) options.push_back(std::move(common));
-    const std::string why = named("term", term->Info().name, options);
+    std::string why = named("term", term->Info().name, options);
     if (!why.empty()) return why;
   }
   return "";
@@ -85,7 +85,7 @@ std::string PluginRegistry::WhyNot() const {
     count += kind->added.size();
   }
   if (count == 0) return "registers nothing";
-  const std::string bad_options = WhyNotOptions();
+  std::string bad_options = WhyNotOptions();
   if (!bad_options.empty()) return bad_options;
   for (const DataReader& reader : readers_) {
     std::string why = DataReaderRegistry::Global().WhyNot(reader);

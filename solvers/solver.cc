@@ -60,7 +60,7 @@ Outcome Solver::Minimize(Objective* objective, RunContext* context, Eigen::Vecto
   CHECK(why.empty()) << why;
   CHECK_EQ(x->size(), objective->num_variables());
   if (!x->allFinite()) return {StopReason::kNumericalFailure, "the start is not finite"};
-  const Outcome outcome = DoMinimize(objective, context, x);
+  Outcome outcome = DoMinimize(objective, context, x);
   StopReason known = outcome.reason;
   if (!FromString(ToString(outcome.reason), &known)) {
     throw std::logic_error("returns the reason " +

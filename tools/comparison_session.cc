@@ -7,6 +7,8 @@
 #include "experiments/atomic_file.h"
 #include "experiments/comparison_tables.h"
 #include "experiments/figures.h"
+#include "experiments/fit_plot.h"
+#include "experiments/plot_file.h"
 #include "tools/fit_summary.h"
 #include "tools/interrupts.h"
 #include "tools/output_files.h"
@@ -54,7 +56,7 @@ std::vector<std::string> ComparisonSession::TableFiles() const {
 }
 
 std::vector<std::string> ComparisonSession::FigureFiles(const std::string& problem) const {
-  std::vector<std::string> files;
+  std::vector<std::string> files = {InFolder(problem + "_fit.plot.json")};
   for (const char* kind : {"_convergence", "_fit"}) {
     for (const char* ending : {".svg", ".gp", ".dat"}) {
       files.push_back(InFolder(problem + kind + ending));
@@ -207,7 +209,15 @@ bool ComparisonSession::DrawFigures(const ComparisonResult& result, FileBatch* b
     if (!figure.drawn) notes_.push_back("no figure: " + figure.message);
     if (figure.written && !figure.drawn && not_drawn_.empty()) not_drawn_ = figure.message;
   }
-  return true;
+  // For the page of batten report, whose plots zoom and show values.
+  const std::string numbers = fit_stem + ".plot.json";
+  const std::vector<PlotPanel> panels =
+      best == nullptr ? std::vector<PlotPanel>() : FitPanels(*result.problems[0], best->run);
+  if (panels.empty()) {
+    batch->Remove(numbers);
+    return true;
+  }
+  return batch->Write(numbers, PlotJson(panels, static_cast<int>(panels.size())), error) != nullptr;
 }
 
 bool ComparisonSession::WriteTables(std::string* error) const {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "experiments/fit_plot.h"
 #include "problems/fit_problem.h"
 #include "tests/experiments/figure_files.h"
 #include "tests/not_a_number.h"
@@ -149,6 +150,33 @@ TEST(FitFigure, SaysWhereItCannotWrite) {
   const FigureResult result = DrawFit(fit, Folder("none") / "no folder" / "wave");
   EXPECT_FALSE(result.written);
   EXPECT_THAT(result.message, HasSubstr("cannot write"));
+}
+
+TEST(FitPanels, HoldDataControlPolygonAndCurveOfEveryPairOfAxes) {
+  const std::vector<std::vector<std::string>> axes = {{"tx"}, {"xy"}, {"xy", "xz", "yz"},
+                                                      {"xy", "zw"}};
+  for (int d = 1; d <= 4; ++d) {
+    for (const bool closed : {false, true}) {
+      const Fit fit = MakeFit(d, closed);
+      const std::vector<PlotPanel> panels = FitPanels(*fit.problem, fit.run);
+      const auto& names = axes[static_cast<std::size_t>(d) - 1];
+      ASSERT_EQ(panels.size(), names.size());
+      for (std::size_t k = 0; k < panels.size(); ++k) {
+        EXPECT_EQ(panels[k].x_label + panels[k].y_label, names[k]);
+        EXPECT_EQ(panels[k].equal_scale, d > 1);
+        ASSERT_EQ(panels[k].series.size(), 3u);
+        EXPECT_EQ(panels[k].series[0].x.size(), closed && d > 1 ? 10u : 9u);
+        EXPECT_EQ(panels[k].series[2].label, "data");
+        EXPECT_EQ(panels[k].series[2].y.size(), 30u);
+      }
+      // The last panel's vertical axis is the last coordinate.
+      const PlotPanel& last = panels.back();
+      EXPECT_EQ(last.series[2].y.back(), std::cos(0.2 * 29 + d - 1) + 10 * (d - 1));
+      const PlotSeries& curve = last.series[1];
+      ASSERT_EQ(curve.x.size(), curve.y.size());
+      if (closed) EXPECT_NEAR(curve.y.front(), curve.y.back(), 1e-12 * 40);
+    }
+  }
 }
 
 TEST(FitFigure, RefusesACurveThatIsNone) {

@@ -46,7 +46,7 @@ TEST_F(CompareCommand, PrintsOneTableOfAllSolversAndWritesAllFiles) {
   for (const char* name :
        {"table.csv", "table.json", "table.md", "table.tex", "cells.jsonl", "rhino_convergence.svg",
         "rhino_convergence.gp", "rhino_convergence.dat", "rhino_fit.svg", "rhino_fit.gp",
-        "rhino_fit.dat", "dolphin_convergence.svg", "dolphin_fit.svg"}) {
+        "rhino_fit.dat", "rhino_fit.plot.json", "dolphin_convergence.svg", "dolphin_fit.svg"}) {
     EXPECT_TRUE(std::filesystem::is_regular_file(out_ + "/" + name)) << name;
   }
   const auto solvers = RunBatten({"list", "solvers", "--json"}).Json()["solvers"];
