@@ -153,8 +153,8 @@ TEST(FitFigure, SaysWhereItCannotWrite) {
 }
 
 TEST(FitPanels, HoldDataControlPolygonAndCurveOfEveryPairOfAxes) {
-  const std::vector<std::vector<std::string>> axes = {{"tx"}, {"xy"}, {"xy", "xz", "yz"},
-                                                      {"xy", "zw"}};
+  const std::vector<std::vector<std::string>> axes = {
+      {"tx"}, {"xy"}, {"xy", "xz", "yz"}, {"xy", "zw"}};
   for (int d = 1; d <= 4; ++d) {
     for (const bool closed : {false, true}) {
       const Fit fit = MakeFit(d, closed);
@@ -174,7 +174,8 @@ TEST(FitPanels, HoldDataControlPolygonAndCurveOfEveryPairOfAxes) {
       EXPECT_EQ(last.series[2].y.back(), std::cos(0.2 * 29 + d - 1) + 10 * (d - 1));
       const PlotSeries& curve = last.series[1];
       ASSERT_EQ(curve.x.size(), curve.y.size());
-      if (closed) EXPECT_NEAR(curve.y.front(), curve.y.back(), 1e-12 * 40);
+      const double gap = curve.y.front() - curve.y.back();
+      EXPECT_EQ(std::abs(gap) < 1e-12 * 40, closed);
     }
   }
 }
@@ -186,6 +187,7 @@ TEST(FitFigure, RefusesACurveThatIsNone) {
   const FigureResult result = DrawFit(fit, stem);
   EXPECT_FALSE(result.written);
   EXPECT_EQ(result.message, "wave: there is no curve to draw");
+  EXPECT_TRUE(FitPanels(*fit.problem, fit.run).empty());
 }
 
 }  // namespace

@@ -50,10 +50,11 @@ INSTANTIATE_TEST_SUITE_P(
                "own",
                {"suite.json: /solvers/1: solver faulty threw an exception while it was made: "
                 "\"out of order\""}},
-        Unmade{"crashing_solver",
-               "faulty/how=crashes",
-               "own",
-               {"suite.json: /solvers/1: found faulty/how=crashes, a plugin's solver that", kCrashed}},
+        Unmade{
+            "crashing_solver",
+            "faulty/how=crashes",
+            "own",
+            {"suite.json: /solvers/1: found faulty/how=crashes, a plugin's solver that", kCrashed}},
         Unmade{"hanging_solver",
                "faulty/how=hangs",
                "own",
