@@ -188,6 +188,8 @@ void AuditConstraints(const AuditedFit& fit, AuditCurve* curve, AuditSums* sums,
     report->elimination_failure =
         "takes coordinates of control points from linear constraints that do not hold them";
   }
+  // Where the constraints hold every coordinate, what is left of g is rounding alone.
+  if (num_independent == projected.size()) std::fill(projected.begin(), projected.end(), Real(0));
   Real squared = sums->squared_slope;
   for (const Real entry : projected) squared += entry * entry;
   report->projected_gradient_norm = static_cast<double>(std::sqrt(squared));

@@ -124,6 +124,11 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
     *error = std::string("fairing=") + ToString(rule) + " " + why_not;
     return false;
   }
+  if (problem->elimination().num_free(problem->num_variables()) == 0) {
+    *error = std::string("fairing=") + ToString(rule) +
+             " has no curves to choose from: the constraints leave nothing free";
+    return false;
+  }
   // Terms at the ends and the like pull, but are no data that anything could be told from.
   std::vector<const RowSource*> distances, others;
   for (std::size_t i = 0; i < problem->terms().size(); ++i) {

@@ -60,6 +60,9 @@ void OnExit() {
   _exit(kFault);
 }
 
+#if defined(__SANITIZE_ADDRESS__)
+void HandleCrashes() {}  // the sanitizer does, and says more
+#else
 /// Says which solver it was, and dies as the signal has it.
 void OnCrash(int number) {
   if (getpid() == own_process) {
@@ -73,16 +76,20 @@ void OnCrash(int number) {
   raise(number);  // the handler is gone by now
 }
 
-void HandlePlugins() {
-  own_process = getpid();
-  std::atexit(&OnExit);
-#if !defined(__SANITIZE_ADDRESS__)
+void HandleCrashes() {
   struct sigaction action = {};
   action.sa_handler = &OnCrash;
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
-  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
     sigaction(number, &action, nullptr);
+  }
+}
 #endif
+
+void HandlePlugins() {
+  own_process = getpid();
+  std::atexit(&OnExit);
+  HandleCrashes();
 }
 
 /// Ends the program at a failed CHECK, ours or Ceres', before glog prints a stack trace and aborts.

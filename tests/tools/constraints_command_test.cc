@@ -44,6 +44,33 @@ TEST(FitCommand, HoldsConstraintsThatAreNotLinear) {
   EXPECT_EQ(rows.size(), fit["iterations"].get<std::size_t>() + 2);
 }
 
+/// A cubic without inner knots, with given ends and no curvature there, is a straight line: its
+/// control points divide it evenly. Nothing is left for a solver to do.
+TEST(FitCommand, GivesTheCurveThatConstraintsDetermine) {
+  constexpr char kZigzag[] = "x,y\n0,0\n1,1\n2,0\n3,1\n4,0\n5,1\n";
+  for (const char* solver : {"banded_qr", "banded_cholesky", "dense_qr", "irls:banded_qr", "lbfgs",
+                             "ceres_lm", "newton", "cg", "lspia", "jacobi_pia", "randomised_pia",
+                             "anderson:lspia", "augmented_lagrangian:lbfgs"}) {
+    const TemporaryFolder folder;
+    const std::string out = folder / "fit.json";
+    const Ended ended = RunBatten({"fit", "-", "--control_points=4", "--constraints=ends,natural",
+                                   std::string("--solver=") + solver, "--out=" + out},
+                                  kZigzag);
+    ASSERT_EQ(ended.status, 0) << solver << ": " << ended.err << ended.out;
+    const nlohmann::json fit = nlohmann::json::parse(ReadFile(out));
+    EXPECT_EQ(fit["audit"]["verified"], true) << solver;
+    for (int j = 0; j < 4; ++j) {
+      const nlohmann::json& point = fit["spline"]["control_points"][static_cast<std::size_t>(j)];
+      EXPECT_NEAR(point[0].get<double>(), 5.0 * j / 3.0, 1e-12) << solver;
+      EXPECT_NEAR(point[1].get<double>(), j / 3.0, 1e-12) << solver;
+    }
+  }
+  ExpectRefused(
+      RunBatten({"fit", "-", "--control_points=4", "--constraints=ends,natural", "--fairing=gcv"},
+                kZigzag),
+      {"--fairing=gcv has no curves to choose from: the constraints leave nothing free"});
+}
+
 TEST(FitCommand, HasNoViolationWithoutThem) {
   const TemporaryFolder folder;
   const std::string out = folder / "fit.json", trace = folder / "trace.csv";
