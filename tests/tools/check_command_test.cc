@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                      {}},
         FaultInCheck{"fault_crasher", "descent", "crashes: Aborted", {}},
         FaultInCheck{"fault_throws", "descent", "it ends with numerical_failure", {}},
-        FaultInCheck{"fault_throws", "memory", "throws: no such luck", {}},
+        FaultInCheck{"fault_throws", "threads", "throws: no such luck", {}},
         FaultInCheck{
             "fault_sleeper", "descent", "does not end within 0.5 s", {"--seconds_per_check=0.5"}},
         kCheckReadsPastX,
