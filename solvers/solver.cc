@@ -60,7 +60,10 @@ Outcome Solver::Minimize(Objective* objective, RunContext* context, Eigen::Vecto
   CHECK(why.empty()) << why;
   CHECK_EQ(x->size(), objective->num_variables());
   if (!x->allFinite()) return {StopReason::kNumericalFailure, "the start is not finite"};
-  if (x->size() == 0) return {StopReason::kSolved, "the constraints leave nothing free"};
+  if (x->size() == 0) {
+    if (context->Iterate(*x) != Status::kOk) return {context->stop_reason(), ""};
+    return {StopReason::kSolved, "the constraints leave nothing free"};
+  }
   Outcome outcome = DoMinimize(objective, context, x);
   StopReason known = outcome.reason;
   if (!FromString(ToString(outcome.reason), &known)) {
