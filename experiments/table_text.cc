@@ -24,18 +24,18 @@ std::string Replaced(const std::string& text,
 
 /// Numbers to the right, words to the left.
 char AlignmentOf(const CsvTable& table, const std::string& column) {
-  const std::vector<std::string> texts = table.Distinct(column);
-  const bool has_words = std::any_of(texts.begin(), texts.end(), [](const std::string& text) {
-    double ignored = 0.0;
-    return !text.empty() && !ParseNumber(text, &ignored);
-  });
-  return has_words ? 'l' : 'r';
+  double ignored = 0.0;
+  for (std::size_t row = 0; row < table.num_rows(); ++row) {
+    const std::string& text = table.Text(row, column);
+    if (!text.empty() && !ParseNumber(text, &ignored)) return 'l';
+  }
+  return 'r';
 }
 
+/// `alignment`: a letter for each of `columns`.
 std::string LatexFloat(const CsvTable& table, const std::vector<std::string>& columns,
-                       const std::vector<std::size_t>& rows, const std::string& caption) {
-  std::string alignment;
-  for (const std::string& column : columns) alignment += AlignmentOf(table, column);
+                       const std::string& alignment, const std::vector<std::size_t>& rows,
+                       const std::string& caption) {
   std::string text =
       "\\begin{table*}\n\\centering\\scriptsize\\setlength{\\tabcolsep}{3pt}\n\\caption{" +
       LatexText(caption) + "}\n\\begin{tabular}{" + alignment + "}\n\\toprule\n";
@@ -114,6 +114,8 @@ std::string TablesLatex(const CsvTable& table, const std::string& caption,
     const std::vector<std::string> texts = table.Distinct(column);
     return std::any_of(texts.begin(), texts.end(), [](const auto& text) { return !text.empty(); });
   });
+  std::string alignment;
+  for (const std::string& column : columns) alignment += AlignmentOf(table, column);
   // In the order of their first rows.
   std::vector<std::string> names;
   std::map<std::string, std::vector<std::size_t>> rows_of;
@@ -137,7 +139,7 @@ std::string TablesLatex(const CsvTable& table, const std::string& caption,
       if (num_floats > 0 && num_floats % kMostHeld == 0) text += "\\clearpage\n";
       ++num_floats;
       const std::string of = (name.empty() ? "" : ": " + name) + (begin > 0 ? ", continued" : "");
-      text += LatexFloat(table, columns,
+      text += LatexFloat(table, columns, alignment,
                          {rows.begin() + static_cast<std::ptrdiff_t>(begin),
                           rows.begin() + static_cast<std::ptrdiff_t>(
                                              std::min(begin + kMostLatexRows, rows.size()))},
