@@ -1,8 +1,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <exception>
-#include <new>
 
 #include "cost_functions/curve_fairing.h"
 #include "cost_functions/end_condition.h"
@@ -10,6 +8,7 @@
 #include "cost_functions/foot_point.h"
 #include "cost_functions/free_parameter.h"
 #include "cost_functions/interpolation.h"
+#include "cost_functions/made_or_error.h"
 #include "cost_functions/term.h"
 
 namespace batten {
@@ -35,16 +34,8 @@ std::vector<OptionInfo> CommonTermOptions() {
 
 std::unique_ptr<BlockFamily> MakeFamilyOf(const Term& term, const FitSetting& setting,
                                           const OptionValues& options, std::string* error) {
-  try {
-    return term.MakeFamily(setting, options, error);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& exception) {
-    constexpr std::size_t kLongest = 300;
-    *error = "term " + term.Info().name +
-             " threw an exception while it was made: " + Quoted(exception.what(), kLongest);
-    return nullptr;
-  }
+  return MadeOrError(
+      "term " + term.Info().name, [&] { return term.MakeFamily(setting, options, error); }, error);
 }
 
 TermRegistry& TermRegistry::Global() {

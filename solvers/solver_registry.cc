@@ -2,9 +2,7 @@
 
 #include <glog/logging.h>
 
-#include <exception>
-#include <new>
-
+#include "cost_functions/made_or_error.h"
 #include "solvers/anderson.h"
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/banded_cholesky.h"
@@ -132,16 +130,8 @@ std::unique_ptr<Solver> SolverRegistry::Make(const NameSpec& spec, OptionValues*
     if (base == nullptr) return nullptr;
   }
   if (options_used != nullptr) *options_used = options;
-  try {
-    return entry.make(options, std::move(base));
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& exception) {
-    constexpr std::size_t kLongest = 300;
-    *error = "solver " + spec.name +
-             " threw an exception while it was made: " + Quoted(exception.what(), kLongest);
-    return nullptr;
-  }
+  return MadeOrError(
+      "solver " + spec.name, [&] { return entry.make(options, std::move(base)); }, error);
 }
 
 }  // namespace batten
