@@ -73,6 +73,9 @@ std::string UnknownOptionMessage(const std::vector<OptionInfo>& infos, const std
   return found + "; did you mean " + *nearest + " (" + range + ")? known: " + Joined(names);
 }
 
+constexpr char kOfValues[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.+";
+constexpr std::string_view kOfNames(kOfValues, sizeof(kOfValues) - sizeof(".+"));  // not these two
+
 class SpecParser {
  public:
   SpecParser(const std::string& text, std::string* error) : text_(text), error_(error) {}
@@ -81,7 +84,7 @@ class SpecParser {
     // Specs are copied and destroyed by recursion: without a bound a long text overflows the stack.
     constexpr int kMostNames = 16;
     for (int count = 1; count <= kMostNames; ++count) {
-      if (!ParseWord("", "a name of letters, digits, _ and -", &spec->name)) return false;
+      if (!ParseWord(kOfNames, "a name of letters, digits, _ and -", &spec->name)) return false;
       while (ParseCharacter('/')) {
         if (!ParseOption(spec)) return false;
       }
@@ -107,9 +110,9 @@ class SpecParser {
   bool ParseOption(NameSpec* spec) {
     const size_t begin = position_;
     std::string option, value;
-    if (!ParseWord("", "an option as NAME=VALUE", &option)) return false;
+    if (!ParseWord(kOfNames, "an option as NAME=VALUE", &option)) return false;
     if (!ParseCharacter('=')) return Refuse(position_, "= and a value after option " + option);
-    if (!ParseWord(".+", "a value of letters, digits, _ - . +", &value)) return false;
+    if (!ParseWord(kOfValues, "a value of letters, digits, _ - . +", &value)) return false;
     for (const auto& earlier : spec->options) {
       if (earlier.first == option) return Refuse(begin, "option " + option + " once");
     }
@@ -117,9 +120,7 @@ class SpecParser {
     return true;
   }
 
-  bool ParseWord(const std::string& also, const std::string& allowed, std::string* word) {
-    const std::string characters =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-" + also;
+  bool ParseWord(std::string_view characters, const std::string& allowed, std::string* word) {
     const size_t end = std::min(text_.find_first_not_of(characters, position_), text_.size());
     *word = text_.substr(position_, end - position_);
     position_ = end;
@@ -193,19 +194,15 @@ std::string OptionInfo::DefaultText() const {
 }
 
 bool IsSpecName(const std::string& text) {
-  NameSpec spec;
-  std::string error;
-  return ParseNameSpec(text, &spec, &error) && spec.options.empty() && spec.wrapped == nullptr;
+  return !text.empty() && text.find_first_not_of(kOfNames) == std::string::npos;
+}
+
+bool IsSpecValue(const std::string& text) {
+  return !text.empty() && text.find_first_not_of(kOfValues) == std::string::npos;
 }
 
 std::string WhyNoOptionList(const std::vector<OptionInfo>& infos) {
   constexpr std::size_t kLongest = 60;
-  const auto is_value = [](const std::string& word) {
-    NameSpec spec;
-    std::string error;
-    return ParseNameSpec("name/option=" + word, &spec, &error) && spec.options.size() == 1 &&
-           spec.options.front().second == word && spec.wrapped == nullptr;
-  };
   for (std::size_t i = 0; i < infos.size(); ++i) {
     const OptionInfo& info = infos[i];
     if (!IsSpecName(info.name)) {
@@ -213,7 +210,7 @@ std::string WhyNoOptionList(const std::vector<OptionInfo>& infos) {
              "; allowed: letters, digits, _ and -";
     }
     for (const std::string& word : info.words) {
-      if (is_value(word)) continue;
+      if (IsSpecValue(word)) continue;
       return "has an option " + info.name + " with the word " + Quoted(word, kLongest) +
              "; allowed: letters, digits, _, -, . and +";
     }

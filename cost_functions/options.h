@@ -33,8 +33,9 @@ struct OptionInfo {
   std::string DefaultText() const;
 };
 
-/// Whether it is a name of the grammar below.
+/// Whether it is a name of the grammar below, or what can stand behind the = of an option.
 bool IsSpecName(const std::string& text);
+bool IsSpecValue(const std::string& text);
 /// Empty, or what is wrong with a list of options, as a sentence's end: "has two options named x".
 std::string WhyNoOptionList(const std::vector<OptionInfo>& infos);
 

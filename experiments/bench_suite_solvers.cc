@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 #include "experiments/bench_matrix.h"
@@ -19,14 +18,6 @@ struct PlacedValue {
   std::string text;
 };
 
-/// What can stand behind the = of an option.
-bool IsWord(const std::string& text) {
-  const auto is_of_word = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '+';
-  };
-  return !text.empty() && std::all_of(text.begin(), text.end(), is_of_word);
-}
-
 /// Values of one option: a number or a word, or a list of them.
 bool ReadOptionValues(const StrictObject& options, const std::string& key,
                       std::vector<PlacedValue>* values) {
@@ -42,7 +33,7 @@ bool ReadOptionValues(const StrictObject& options, const std::string& key,
     double number = 0.0;
     if (entries[i].IsNumber(&number)) {
       value.text = NumberText(number);
-    } else if (!entries[i].IsText(&value.text) || !IsWord(value.text)) {
+    } else if (!entries[i].IsText(&value.text) || !IsSpecValue(value.text)) {
       return entries[i].Refuse("", options.IsList(key) ? "a number or a word" : kAllowed);
     }
     values->push_back(std::move(value));
