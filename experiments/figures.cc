@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "experiments/figure_panels.h"
+#include "experiments/fit_lines.h"
 #include "experiments/short_number.h"
 #include "problems/fit_problem.h"
 
@@ -26,68 +26,11 @@ std::string ColumnNames(int dimension) {
   return dimension == 1 ? "# t x\n" : "# " + all.substr(0, 2 * dimension - 1) + "\n";
 }
 
-std::string DataName(int step) {
-  return step == 1 ? "data" : "data (1 in " + std::to_string(step) + ")";
-}
-
-std::string DataBlock(const CurveFit& fit, const Eigen::VectorXd& parameters, int step) {
-  std::string text = "# " + DataName(step) + "\n" + ColumnNames(fit.dimension());
-  const Points& points = fit.data().points;
-  for (Eigen::Index i = 0; i < points.rows(); i += step) {
-    text += Line(parameters[i], points.row(i).data(), fit.dimension());
-  }
-  return text;
-}
-
-/// In dimension 1 control point j stands at its Greville abscissa.
-std::string PolygonBlock(const BsplineBasis& basis, const Points& control_points) {
-  const int d = static_cast<int>(control_points.cols());
-  std::vector<int> order(static_cast<std::size_t>(basis.num_control_points()));
-  std::iota(order.begin(), order.end(), 0);
-  if (d == 1) {
-    // On closed curves some abscissae come from the turn before.
-    std::stable_sort(order.begin(), order.end(),
-                     [&](int a, int b) { return basis.Greville(a) < basis.Greville(b); });
-  } else if (basis.periodic()) {
-    order.push_back(0);
-  }
-  std::string text = "# control polygon\n" + ColumnNames(d);
-  for (const int j : order) text += Line(basis.Greville(j), control_points.row(j).data(), d);
-  return text;
-}
-
-/// Every span alike, its ends included.
-std::string CurveBlock(const BsplineCurve& curve) {
-  const BsplineBasis& basis = curve.basis();
-  const int d = curve.dimension();
-  constexpr int kSamplesPerSpan = 24;
-  const int most = std::clamp(kMostSamples / basis.num_domain_spans(), 2, kSamplesPerSpan);
-  const int per_span = basis.degree() == 1 ? 1 : most;
-  std::string text = "# curve\n" + ColumnNames(d);
-  std::vector<double> point(static_cast<std::size_t>(d));
-  for (int k = basis.first_span(); k <= basis.last_span(); ++k) {
-    const double begin = basis.knots()[k];
-    const double length = basis.knots()[k + 1] - begin;
-    for (int s = 0; s < per_span && length > 0.0; ++s) {
-      const double t = begin + length * s / per_span;
-      curve.Evaluate(t, 0, point.data());
-      text += Line(t, point.data(), d);
-    }
-  }
-  // A closed curve ends where it began.
-  curve.Evaluate(basis.domain_end(), 0, point.data());
-  return text + Line(basis.domain_end(), point.data(), d);
-}
-
-/// Where the spans of a curve with given knots meet.
-std::string KnotBlock(const BsplineCurve& curve) {
-  const BsplineBasis& basis = curve.basis();
-  std::string text = "# knots\n" + ColumnNames(curve.dimension());
-  std::vector<double> point(static_cast<std::size_t>(curve.dimension()));
-  for (int k = basis.first_span(); k <= basis.last_span() + 1; ++k) {
-    const double t = basis.knots()[static_cast<std::size_t>(k)];
-    curve.Evaluate(t, 0, point.data());
-    text += Line(t, point.data(), curve.dimension());
+std::string Block(const FitLine& line) {
+  const int d = static_cast<int>(line.points.cols());
+  std::string text = "# " + line.name + "\n" + ColumnNames(d);
+  for (std::size_t k = 0; k < line.t.size(); ++k) {
+    text += Line(line.t[k], line.points.row(static_cast<Eigen::Index>(k)).data(), d);
   }
   return text;
 }
@@ -113,26 +56,19 @@ std::vector<FigureAxis> Axes(const CurveFit& fit, const Points& control_points) 
 
 std::vector<FigurePanel> Panels(const CurveFit& fit, const Points& control_points) {
   const std::vector<FigureAxis> axes = Axes(fit, control_points);
-  const auto panel = [&axes](int across, int up) {
-    FigurePanel made;
-    made.horizontal = axes[static_cast<std::size_t>(across)];
-    made.vertical = axes[static_cast<std::size_t>(up)];
-    return made;
-  };
-  switch (fit.dimension()) {
-    case 1: {
-      FigurePanel made = panel(0, 0);
-      made.horizontal = {"t", 1, fit.basis().domain_begin(), fit.basis().domain_end()};
-      made.vertical.column = 2;
-      return {made};
+  std::vector<FigurePanel> panels;
+  for (const auto& [across, up] : AxisPairs(fit.dimension())) {
+    FigurePanel panel;
+    panel.vertical = axes[static_cast<std::size_t>(up)];
+    if (across >= 0) {
+      panel.horizontal = axes[static_cast<std::size_t>(across)];
+    } else {
+      panel.horizontal = {"t", 1, fit.basis().domain_begin(), fit.basis().domain_end()};
+      panel.vertical.column = 2;
     }
-    case 2:
-      return {panel(0, 1)};
-    case 3:
-      return {panel(0, 1), panel(0, 2), panel(1, 2)};
-    default:
-      return {panel(0, 1), panel(2, 3)};
+    panels.push_back(std::move(panel));
   }
+  return panels;
 }
 
 /// Data so dense that they would hide polygon and curve are drawn small and light below them.
@@ -181,14 +117,14 @@ std::string TitleCommand(const std::string& name, const std::string& rest, int w
 }
 
 /// A plot of nothing over the whole width: only there the entries stand in one line.
-std::string Legend(int step, bool with_knots) {
+std::string Legend(const std::string& data_name, bool with_knots) {
   return "unset border\nunset tics\nunset xlabel\nunset ylabel\n"
          "set lmargin at screen 0\nset rmargin at screen 1\n"
          "set bmargin at screen 0\nset tmargin at screen 1\n"
          "set xrange [0:1]\nset yrange [0:1]\n"
          "set key at screen 0.5, screen 0.01 center bottom horizontal Left reverse samplen 2.5\n"
          "plot NaN with points linestyle 1 pointsize 0.45 title " +
-         GnuplotString(DataName(step)) +
+         GnuplotString(data_name) +
          ", \\\n     NaN with linespoints linestyle 2 pointsize 0.35 title 'control polygon', \\\n"
          "     NaN with lines linestyle 3 title 'curve'" +
          (with_knots ? ", \\\n     NaN with points linestyle 4 pointsize 0.45 title 'knots'" : "") +
@@ -209,9 +145,10 @@ FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::
   const int step = (m + kMostPoints - 1) / kMostPoints;
   const bool with_knots = !fit->spec().given_knots.empty();
   const BsplineCurve curve = fit->Curve(run.x);
-  std::string data = DataBlock(*fit, fit->Parameters(run.x), step) + "\n\n" +
-                     PolygonBlock(fit->basis(), control_points) + "\n\n" + CurveBlock(curve);
-  if (with_knots) data += "\n\n" + KnotBlock(curve);
+  const FitLine points = DataLine(*fit, run.x, step);
+  std::string data = Block(points) + "\n\n" + Block(PolygonLine(*fit, run.x)) + "\n\n" +
+                     Block(CurveLine(curve, kMostSamples));
+  if (with_knots) data += "\n\n" + Block(KnotLine(curve));
   const FigureCanvas canvas = LayOutPanels(Panels(*fit, control_points), fit->dimension() > 1);
   const std::string counts = ": " + std::to_string(m) + " points, " + std::to_string(n) +
                              " control points, " + run.solver.ToString();
@@ -221,7 +158,7 @@ FigureResult FitFigure(const Problem& problem, const RunResult& run, const std::
     commands += PanelCommands(canvas, panel) + PlotCommand(panel, IsDense(m), with_knots) +
                 "unset label 1\n";
   }
-  return DrawFigure(stem, data, commands + Legend(step, with_knots) + "unset multiplot\n",
+  return DrawFigure(stem, data, commands + Legend(points.name, with_knots) + "unset multiplot\n",
                     canvas.width, canvas.height, batch);
 }
 
