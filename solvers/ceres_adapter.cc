@@ -7,13 +7,14 @@ namespace batten {
 
 void IterateBooker::Book() {
   booked_ = *state_;
+  known_ = booked_;
   has_booked_ = true;
   status_ = context_->Iterate(booked_);
 }
 
 void IterateBooker::GoOnFrom(const Eigen::VectorXd* state) {
   state_ = state;
-  if (has_booked_) booked_ = *state;
+  known_ = *state;
 }
 
 ceres::CallbackReturnType IterateBooker::operator()(const ceres::IterationSummary& summary) {
@@ -22,7 +23,7 @@ ceres::CallbackReturnType IterateBooker::operator()(const ceres::IterationSummar
 }
 
 Status IterateBooker::Finish(bool state_is_usable, Eigen::VectorXd* x) {
-  if (status_ == Status::kOk && (!has_booked_ || (state_is_usable && *state_ != booked_))) Book();
+  if (status_ == Status::kOk && (!has_booked_ || (state_is_usable && *state_ != known_))) Book();
   *x = booked_;
   return status_;
 }

@@ -20,7 +20,7 @@ class IterateBooker final : public ceres::IterationCallback {
       : context_(context), state_(state) {}
 
   /// Another solve goes on from `state`, the last booked point in other coordinates (a parameter in
-  /// another period), whose iteration 0 is none of the run's.
+  /// another period, or at an end instead of past it), whose iteration 0 is none of the run's.
   void GoOnFrom(const Eigen::VectorXd* state);
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override;
@@ -37,6 +37,7 @@ class IterateBooker final : public ceres::IterationCallback {
   RunContext* context_;
   const Eigen::VectorXd* state_;
   Eigen::VectorXd booked_;
+  Eigen::VectorXd known_;  ///< The same in the coordinates of the present solve.
   bool has_booked_ = false;
   Status status_ = Status::kOk;
 };

@@ -167,8 +167,8 @@ std::optional<Outcome> CeresLmSolver::SolveBoundAt(Objective* objective, RunCont
                                                    std::string* ran) const {
   CeresProblem problem(objective, Evaluation::kJacobian, *x);
   problem.AddTerms();
-  problem.HoldPressed();
   booker->GoOnFrom(&problem.state());
+  problem.HoldPressed();
   LeaveStoppingToRunControl(booker, ceres_options);
   ArrivalWatch watch(&problem);
   if (!problem.moving().empty()) {
@@ -181,7 +181,7 @@ std::optional<Outcome> CeresLmSolver::SolveBoundAt(Objective* objective, RunCont
   *ran = RanWith(summary, options_);
   const Status status = booker->Finish(summary.IsSolutionUsable(), x);
   if (problem.stopped() || status != Status::kOk) return Outcome{context->stop_reason(), ""};
-  if (summary.IsSolutionUsable() && *x != start) {
+  if (summary.IsSolutionUsable() && problem.state() != start) {
     if (watch.has_arrived()) {
       ceres_options->initial_trust_region_radius =
           std::max(summary.iterations.back().trust_region_radius, kLeastRadius);

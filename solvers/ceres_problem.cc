@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "solvers/ceres_spans.h"
@@ -149,15 +150,32 @@ void CeresProblem::AddTerms() {
 std::vector<int> CeresProblem::Pressed() {
   double energy = 0.0;
   Eigen::VectorXd gradient;
-  const Status status = objective_->EnergyAndGradient(state_, &energy, &gradient);
+  Eigen::VectorXd at_ends = state_;
+  for (const BindingWindow& window : moving_.windows()) {
+    double& place = at_ends[window.variable];
+    place = std::clamp(place, window.low, window.high);
+  }
+  const Status status = objective_->EnergyAndGradient(at_ends, &energy, &gradient);
   stopped_ = status == Status::kStop;
-  return status == Status::kOk ? moving_.Pressed(state_, gradient) : std::vector<int>();
+  return status == Status::kOk ? moving_.Pressed(at_ends, gradient) : std::vector<int>();
 }
 
 void CeresProblem::HoldPressed() {
   if (!moving_.AnyIsAtAnEnd()) return;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kUnbounded = std::numeric_limits<double>::max();  // as Ceres has it
   held_ = Pressed();
-  for (const int variable : held_) problem_.SetParameterBlockConstant(state_.data() + variable);
+  std::vector<char> is_held(static_cast<std::size_t>(state_.size()), 0);
+  for (const int variable : held_) is_held[static_cast<std::size_t>(variable)] = 1;
+  for (const BindingWindow& window : moving_.windows()) {
+    if (is_held[static_cast<std::size_t>(window.variable)] == 0) continue;
+    double* value = state_.data() + window.variable;
+    problem_.SetParameterBlockConstant(value);
+    problem_.SetParameterLowerBound(value, 0, -kUnbounded);
+    problem_.SetParameterUpperBound(value, 0, kUnbounded);
+    const bool is_at_low = window.low_is_end && *value <= window.low;
+    *value = std::nextafter(*value, is_at_low ? -kInfinity : kInfinity);
+  }
 }
 
 bool CeresProblem::PressedHaveChanged() {

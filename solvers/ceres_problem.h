@@ -40,8 +40,8 @@ class CeresProblem final : private ceres::EvaluationCallback {
   void AddSpans();
 
   /// After AddTerms: variables at an end of an open curve past which E still falls are constant in
-  /// this problem. Without that, each step takes account of a move that its bound then cuts off.
-  /// Asks for a gradient if one is at an end.
+  /// this problem, a hair past it, where they do not count in the gradient. Without that, each step
+  /// takes account of a move that its bound then cuts off. Asks for a gradient if one is at an end.
   void HoldPressed();
   /// At state() HoldPressed would hold others. Asks for a gradient if one was at an end then.
   bool PressedHaveChanged();
