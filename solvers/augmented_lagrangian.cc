@@ -187,6 +187,8 @@ std::optional<Outcome> AugmentedLagrangianSolver::Round(Objective* objective, Ru
   RoundContext round(augmented, reduction_, first, context);
   const Outcome outcome = base_->Minimize(&inner, &round, x);
   if (context->stop_reason() != StopReason::kNotRun) {
+    // The run may book nothing more, but what it gives back is to meet the constraints.
+    if (x->allFinite()) ProjectOntoConstraints(problem, multipliers->values(), x);
     return Outcome{context->stop_reason(), ""};
   }
   if (outcome.reason == StopReason::kNumericalFailure) return outcome;
