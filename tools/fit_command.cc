@@ -9,6 +9,7 @@
 #include "experiments/figures.h"
 #include "experiments/fit_report.h"
 #include "experiments/max_distance_fit.h"
+#include "experiments/minimum_note.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
 #include "solvers/solver_registry.h"
@@ -194,6 +195,7 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
   }
   if (!run.skipped.empty()) return Refuse("--solver: " + run.skipped, output);
 
+  NoteDistanceFromMinimum(*problem, &run);
   FitReport report = MeasureFit(*problem, run, spec);
   report.fairing_choice = std::move(choice);
   Written written;

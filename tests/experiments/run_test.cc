@@ -3,13 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "experiments/minimum_note.h"
 #include "experiments/sparse_run.h"
 #include "tests/experiments/outlines.h"
 #include "tests/roundoff.h"
+#include "tests/solvers/test_fits.h"
 
 namespace batten {
 namespace {
@@ -273,6 +276,36 @@ TEST(Run, WarnsOfKinksAndOfCurvesFarFromTheDataWhereParametersMove) {
   const CurveFit& fit = *rhino->curve_fit();
   spec.start_points = 1e7 * fit.ControlPoints(rhino->start());
   EXPECT_THAT(notes_on("lbfgs"), Contains("far from the data"));
+}
+
+/// Distance of run->x from the direct answer, over the data's size, and whether a note tells it.
+double NotedDistance(const Problem& problem, const std::string& solver, bool* noted) {
+  RunResult run = RunSolver(problem, solver);
+  EXPECT_TRUE(IsSuccess(run.outcome.reason)) << solver;
+  NoteDistanceFromMinimum(problem, &run);
+  const std::vector<std::string> names = NoteNames(run);
+  *noted = std::count(names.begin(), names.end(), "far from the minimum") > 0;
+  const RunResult direct = RunSolver(problem, "banded_qr");
+  const CurveFit& fit = *problem.curve_fit();
+  const Points off = fit.ControlPoints(run.x) - fit.ControlPoints(direct.x);
+  return off.rowwise().norm().maxCoeff() / fit.size();
+}
+
+TEST(Run, SaysHowFarFromTheMinimumAHeavyTermLetsItEnd) {
+  for (const auto& [weight, is_heavy] : {std::pair("1e-3", false), {"1e8", true}}) {
+    const auto problem =
+        MakeFit(MakeNoisyLoop(40, 2, 11),
+                MakeSpec(3, false, 20, std::string("interpolation,fairing/weight=") + weight));
+    for (const char* solver : {"newton", "cg", "ceres_lm", "banded_cholesky"}) {
+      bool noted = false;
+      const double distance = NotedDistance(*problem, solver, &noted);
+      EXPECT_EQ(distance > 1e-6, is_heavy) << solver << " " << weight << " " << distance;
+      EXPECT_EQ(noted, is_heavy) << solver << " " << weight;
+    }
+    bool noted = false;
+    NotedDistance(*problem, "banded_qr", &noted);
+    EXPECT_FALSE(noted);
+  }
 }
 
 TEST(Run, KnowsWhereALineSearchHasToEnd) {

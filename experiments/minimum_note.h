@@ -1,0 +1,17 @@
+#ifndef BATTEN_EXPERIMENTS_MINIMUM_NOTE_H_
+#define BATTEN_EXPERIMENTS_MINIMUM_NOTE_H_
+
+#include "experiments/run.h"
+#include "problems/problem.h"
+
+namespace batten {
+
+/// Where E is quadratic with one minimum, and the run claims to have reached it (IsSuccess) with
+/// control points farther than 1e-6 of the data's size from the direct answer, a note that says how
+/// far: beside heavy terms |g| is small, or rounding noise, long before P is near. Costs one QR of
+/// the rows in their band.
+void NoteDistanceFromMinimum(const Problem& problem, RunResult* run);
+
+}  // namespace batten
+
+#endif  // BATTEN_EXPERIMENTS_MINIMUM_NOTE_H_
