@@ -16,10 +16,11 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // A whole span is seldom convex, a quarter mostly is.
 constexpr int kPiecesPerSpan = 4;
 
-template <typename Box>
+/// D is -1 where it is known at run time only.
+template <int D, typename Box>
 double SquaredDistanceToBox(const Box& box, const double* point, int dimension) {
   double sum = 0.0;
-  for (int c = 0; c < dimension; ++c) {
+  for (int c = 0; c < (D >= 0 ? D : dimension); ++c) {
     const double outside = std::max({box.low[c] - point[c], point[c] - box.high[c], 0.0});
     sum += outside * outside;
   }
@@ -145,11 +146,10 @@ class ClosestPoint::Search {
     start = basis.Wrap(start);
     if (!std::isfinite(start)) start = basis.domain_begin();
     const BezierStretch stretch = all.Stretch(all.PieceOf(basis.FindSpan(start), start));
-    best_ = MeasureDistance(stretch, point, start);
+    // No farther than the start itself; a good one excludes nearly all the rest.
+    best_ = FindFoot(stretch, point, stretch.low, start, stretch.high);
     if (!std::isfinite(best_.squared_distance)) return;
     SetThreshold();
-    // A good start excludes nearly all the rest.
-    Consider(FindFoot(stretch, point, stretch.low, start, stretch.high));
     VisitBoxes();
   }
 
@@ -213,6 +213,18 @@ class ClosestPoint::Search {
   }
 
   void VisitBoxes() {
+    switch (curve_.dimension()) {
+      case 2:
+        return VisitBoxesOf<2>();
+      case 3:
+        return VisitBoxesOf<3>();
+      default:
+        return VisitBoxesOf<-1>();
+    }
+  }
+
+  template <int D>
+  void VisitBoxesOf() {
     struct Visit {
       int level;
       int index;
@@ -233,7 +245,7 @@ class ClosestPoint::Search {
       }
       const std::vector<Box>& boxes = levels[visit.level - 1];
       const auto child = [&](int index) {
-        return Visit{visit.level - 1, index, SquaredDistanceToBox(boxes[index], point_, d)};
+        return Visit{visit.level - 1, index, SquaredDistanceToBox<D>(boxes[index], point_, d)};
       };
       Visit near = child(2 * visit.index);
       if (2 * visit.index + 1 < static_cast<int>(boxes.size())) {

@@ -54,25 +54,34 @@ DistancePiece::DistancePiece(int degree, int dimension, const double* points, co
 }
 
 void DistancePiece::Look() {
+  if (degree_ == 3 && dimension_ == 2) return LookAt<3, 2>();
+  if (degree_ == 3 && dimension_ == 3) return LookAt<3, 3>();
+  LookAt<-1, -1>();
+}
+
+template <int P, int D>
+void DistancePiece::LookAt() {
   static const SquareWeights kWeights;
-  const auto& weight = kWeights.weight[degree_];
-  double f[kMaxProduct] = {};
+  const int p = P >= 0 ? P : degree_;
+  const int d = D >= 0 ? D : dimension_;
+  const auto& weight = kWeights.weight[p];
+  double f[P >= 0 ? 2 * P + 1 : kMaxProduct] = {};
   double largest = 0.0;
   diameter_ = 0.0;
-  for (int i = 0; i <= degree_; ++i) {
-    const double* a = v_ + i * dimension_;
+  for (int i = 0; i <= p; ++i) {
+    const double* a = v_ + i * d;
     double square = 0.0;
     double apart = 0.0;
-    for (int c = 0; c < dimension_; ++c) {
+    for (int c = 0; c < d; ++c) {
       square += a[c] * a[c];
       apart += (a[c] - v_[c]) * (a[c] - v_[c]);
     }
     f[2 * i] += weight[i][i] * square;
     largest = std::max(largest, square);
     diameter_ = std::max(diameter_, apart);
-    for (int j = i + 1; j <= degree_; ++j) {
+    for (int j = i + 1; j <= p; ++j) {
       double product = 0.0;
-      for (int c = 0; c < dimension_; ++c) product += a[c] * v_[j * dimension_ + c];
+      for (int c = 0; c < d; ++c) product += a[c] * v_[j * d + c];
       f[i + j] += 2.0 * weight[i][j] * product;
     }
   }
@@ -80,11 +89,11 @@ void DistancePiece::Look() {
   // |v + delta|^2 - |v|^2 for every coordinate off by rounding_, and a rounding for each of the
   // at most p + d + 2 sums and products, all at once.
   const double size = std::sqrt(largest);
-  const double noise = 2.0 * std::sqrt(dimension_) * rounding_ * (size + rounding_) +
-                       (degree_ + dimension_ + 2) * kPieceRounding * largest;
+  const double noise =
+      2.0 * std::sqrt(d) * rounding_ * (size + rounding_) + (p + d + 2) * kPieceRounding * largest;
   double least = f[0];
   bool rises = true, falls = true, convex = true;
-  for (int k = 1; k <= 2 * degree_; ++k) {
+  for (int k = 1; k <= 2 * p; ++k) {
     least = std::min(least, f[k]);
     rises = rises && f[k] - f[k - 1] > 2.0 * noise;
     falls = falls && f[k - 1] - f[k] > 2.0 * noise;

@@ -36,6 +36,9 @@ class DistancePiece {
 
  private:
   void Look();
+  /// Sizes -1 are known at run time only.
+  template <int P, int D>
+  void LookAt();
 
   int degree_ = 0;
   int dimension_ = 0;
