@@ -11,10 +11,15 @@ namespace batten {
 /// space it is at least 0.
 struct CurvatureSample {
   double t = 0.0;
-  double s = 0.0;      ///< Arc length from the begin.
-  double kappa = 0.0;  ///< In 1 / the unit of the data; not finite where C' is zero.
+  double s = 0.0;  ///< Arc length from the begin.
+  /// In 1 / the unit of the data; 0 where it is no more than rounding, not a number where C' is.
+  double kappa = 0.0;
+  /// By how much roundings may have moved kappa: those of the control points, which are worth a few
+  /// of the last digits of the largest of them, of C' and of C''. Infinite where C' is rounding.
+  double noise = 0.0;
   double point[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
-  double normal[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};  ///< Unit, to where the curve bends.
+  /// Unit, to where the curve bends; zeros where kappa is 0 or not a number.
+  double normal[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
 };
 
 /// At both ends of every span that is not empty and at `per_span` - 1 places between, in order: a
@@ -22,23 +27,32 @@ struct CurvatureSample {
 /// more.
 std::vector<CurvatureSample> SampleCurvature(const BsplineCurve& curve, int per_span);
 
+/// The same at up to 25 places a span, as many as make at most `most` samples (2 or more); where
+/// two a span are too many, some of these, evenly, with both ends of the curve.
+std::vector<CurvatureSample> SampleCurvatureUpTo(const BsplineCurve& curve, int most);
+
+struct CurvaturePlace {
+  double t = 0.0;
+  double kappa = 0.0;
+};
+
 /// How fair a curve is, read from samples of its curvature (4 to 32 a span, at most some two
-/// million).
+/// million). What may be rounding (CurvatureSample::noise) is not counted: a straight line and a
+/// curve that is one point have zeros throughout.
 struct CurveFairness {
   double bending_energy = 0.0;  ///< integral of kappa^2 ds
   /// integral of |d kappa / ds| ds: all rises and falls of the curvature, jumps at knots included.
   double curvature_variation = 0.0;
   double max_curvature = 0.0;     ///< Largest |kappa|...
   double max_curvature_at = 0.0;  ///< ...and its parameter.
-  /// Local extrema of kappa inside the curve. Ups and downs of less than 1e-6 of the largest
-  /// |kappa| are none: the curvature of a circle has no extremum that is more than rounding.
+  /// Local extrema of kappa inside the curve, of closed curves all. Ups and downs of less than 1e-6
+  /// of the |kappa| there are none: a fitted circle has no extremum.
   int num_curvature_extrema = 0;
-  /// In the plane: changes of the sign of kappa, by as much. -1 in other dimensions.
-  int num_inflections = -1;
-  /// Parameters of the extrema and inflections, in order, the first kMostPlaces of each: of extrema
-  /// the sample that is highest or lowest, of inflections where the line between samples is zero.
+  int num_inflections = -1;  ///< In the plane: changes of the sign of kappa. -1 otherwise.
+  /// The extrema and inflections in order, the first kMostPlaces of each: of extrema the sample
+  /// that is highest or lowest, of inflections where the line between samples is zero.
   static constexpr int kMostPlaces = 1000;
-  std::vector<double> curvature_extrema;
+  std::vector<CurvaturePlace> curvature_extrema;
   std::vector<double> inflections;
 };
 CurveFairness MeasureFairness(const BsplineCurve& curve);

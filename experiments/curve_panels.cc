@@ -36,7 +36,11 @@ double AngleBetween(const double* u, const double* v, int dimension) {
   return 2.0 * std::atan2(std::sqrt(difference), std::sqrt(sum));
 }
 
-CurvePanels::CurvePanels(const BsplineCurve& curve) : curve_(curve), dimension_(curve.dimension()) {
+CurvePanels::CurvePanels(const BsplineCurve& curve)
+    : curve_(curve),
+      dimension_(curve.dimension()),
+      rounding_(16.0 * std::numeric_limits<double>::epsilon() *
+                curve.control_points().cwiseAbs().maxCoeff()) {
   const BsplineBasis& basis = curve.basis();
   const Points& control_points = curve.control_points();
   const auto n = control_points.rows();
@@ -140,8 +144,12 @@ const double* CurvePanels::ControlPoint(int span, int j) const {
   return curve_.control_points().data() + index * dimension_;
 }
 
-double CurvePanels::TopSpeed(int span) const {
-  // C' is a mean of the p (P_j - P_(j-1)) / (u_(j+p) - u_j).
+double CurvePanels::SpeedNoise(int span) const {
+  // C' is a mean of the p (P_j - P_(j-1)) / (u_(j+p) - u_j). At a cusp it is a sum of p terms of
+  // opposite sign, none larger than the largest of these times p. The control points themselves are
+  // known to some roundings of their coordinates: far from the origin, or where the curve is but a
+  // point, these are all that the differences are.
+  constexpr double kRoundings = 16.0 * kMaxDegree * std::numeric_limits<double>::epsilon();
   const BsplineBasis& basis = curve_.basis();
   const int p = basis.degree();
   double top = 0.0;
@@ -152,7 +160,8 @@ double CurvePanels::TopSpeed(int span) const {
       const double step = ControlPoint(span, j)[c] - ControlPoint(span, j - 1)[c];
       squared += step * step;
     }
-    top = std::max(top, p * std::sqrt(squared) / (basis.knots()[i + p] - basis.knots()[i]));
+    const double noise = kRoundings * std::sqrt(squared) + rounding_;
+    top = std::max(top, p * noise / (basis.knots()[i + p] - basis.knots()[i]));
   }
   return top;
 }
@@ -162,9 +171,7 @@ bool CurvePanels::UnitDerivative(int span, double t, double* result) const {
   double squared = 0.0;
   for (int c = 0; c < dimension_; ++c) squared += result[c] * result[c];
   const double speed = std::sqrt(squared);
-  // C' of a cusp is a sum of p terms of opposite sign, none larger than the top speed times p.
-  constexpr double kRoundings = 16.0 * kMaxDegree * std::numeric_limits<double>::epsilon();
-  if (!(speed > kRoundings * TopSpeed(span))) return false;
+  if (!(speed > SpeedNoise(span))) return false;
   for (int c = 0; c < dimension_; ++c) result[c] /= speed;
   return true;
 }

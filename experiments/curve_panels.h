@@ -39,14 +39,15 @@ class CurvePanels {
   const double* ControlPoint(int span, int j) const;
   bool UnitDerivative(int span, double t, double* result) const;
   double Speed(int span, double t) const;
-  /// An upper bound of |C'| on the span.
-  double TopSpeed(int span) const;
+  /// |C'| on the span that may be no more than rounding.
+  double SpeedNoise(int span) const;
   void AddSpan(int span, int num_panels);
   void Split(const Panel& whole);
   bool IsStraight(const Panel& panel) const;
 
   const BsplineCurve& curve_;
   int dimension_;
+  double rounding_;        // of differences of control points
   double shortest_ = 0.0;  // panels are not halved below it
   std::vector<Panel> panels_;
 };

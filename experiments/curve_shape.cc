@@ -133,8 +133,11 @@ struct FreeArc {
 
 std::vector<FreeArc> FreeArcs(const BsplineCurve& curve, const CurvePanels& panels,
                               const Eigen::VectorXd& feet) {
-  // Feet nearer than this along the curve are one.
-  const double same = 1e-9 * panels.length();
+  // Feet nearer than this along the curve are one; so are all feet of a curve that is a point but
+  // for roundings of its coordinates.
+  constexpr double kRoundings = 64.0 * std::numeric_limits<double>::epsilon();
+  const double same =
+      std::max(1e-9 * panels.length(), kRoundings * curve.control_points().cwiseAbs().maxCoeff());
   std::vector<double> parameters(feet.data(), feet.data() + feet.size());
   std::sort(parameters.begin(), parameters.end());
   const BsplineBasis& basis = curve.basis();

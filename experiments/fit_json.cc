@@ -81,6 +81,13 @@ Json ShapeJson(const FitReport& report) {
           {"longest_free_arc", shape.longest_free_arc}};
 }
 
+/// The parameters of places, or their curvatures.
+Json PlacesJson(const std::vector<CurvaturePlace>& places, double CurvaturePlace::*field) {
+  Json numbers = Json::array();
+  for (const CurvaturePlace& place : places) numbers.push_back(place.*field);
+  return numbers;
+}
+
 Json FairnessJson(const FitReport& report) {
   if (!report.fairness.has_value()) return nullptr;
   const CurveFairness& fairness = *report.fairness;
@@ -91,7 +98,8 @@ Json FairnessJson(const FitReport& report) {
           {"max_curvature_at", fairness.max_curvature_at},
           {"num_curvature_extrema", fairness.num_curvature_extrema},
           {"num_inflections", plane ? Json(fairness.num_inflections) : Json(nullptr)},
-          {"curvature_extrema", fairness.curvature_extrema},
+          {"curvature_extrema", PlacesJson(fairness.curvature_extrema, &CurvaturePlace::t)},
+          {"extreme_curvatures", PlacesJson(fairness.curvature_extrema, &CurvaturePlace::kappa)},
           {"inflections", plane ? Json(fairness.inflections) : Json(nullptr)}};
 }
 

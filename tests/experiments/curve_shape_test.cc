@@ -173,6 +173,18 @@ TEST(CurveShape, GivesAPointNoLengthAndNoTurning) {
   }
 }
 
+TEST(CurveShape, GivesAPointOfRoundingsNoTurningAndNoLoop) {
+  Points points(7, 2);
+  for (int j = 0; j < 7; ++j) {
+    points.row(j) << 1e9 * (1.0 + kEpsilon * (j % 3 - 1)), 1e9 * (1.0 + kEpsilon * (j * j % 3 - 1));
+  }
+  for (const bool closed : {false, true}) {
+    const CurveShape shape = ShapeBeside(Curve(3, closed, points), Rows({{0, 0}, {1e9, 0}}));
+    EXPECT_EQ(shape.turning, 0.0);
+    EXPECT_EQ(shape.num_free_loops, 0);
+  }
+}
+
 /// A way along the x axis, from 0 to 9, with a detour of `height` between x = 4 and 4.5.
 BsplineCurve WithDetour(double height) {
   return Curve(1, false, Rows({{0, 0}, {4, 0}, {4, height}, {4.5, height}, {4.5, 0}, {9, 0}}));
