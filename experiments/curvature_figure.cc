@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/curve_fairness.h"
 #include "experiments/run.h"
 
 namespace batten {
@@ -50,10 +49,8 @@ PlotPanel CombPanel(const std::string& name, const Samples& samples, double toot
     curve.x.push_back(sample.point[0]);
     curve.y.push_back(sample.point[1]);
     if (i % every != 0 || !std::isfinite(sample.kappa)) continue;
-    const double length = -tooth * std::abs(sample.kappa);
-    const double tip[] = {sample.point[0] + length * sample.normal[0],
-                          sample.point[1] + length * sample.normal[1]};
-    for (const double* place : {sample.point, tip, sample.point}) {
+    const std::array<double, kMaxDimension> tip = ToothTip(sample, tooth);
+    for (const double* place : {sample.point, tip.data(), sample.point}) {
       comb.x.push_back(place[0]);
       comb.y.push_back(place[1]);
     }
@@ -77,18 +74,31 @@ PlotSeries CurvatureSeries(const std::string& name, const Samples& samples, int 
 
 }  // namespace
 
+double ToothLength(const std::vector<std::vector<CurvatureSample>>& curves) {
+  constexpr double kLongestTooth = 0.15;  // of the longest side
+  double largest = 0.0, side = 0.0;
+  for (const Samples& samples : curves) {
+    largest = std::max(largest, UsualCurvature(samples));
+    side = std::max(side, LongestSide(samples));
+  }
+  return largest > 0.0 ? kLongestTooth * side / largest : 0.0;
+}
+
+std::array<double, kMaxDimension> ToothTip(const CurvatureSample& sample, double tooth_length) {
+  std::array<double, kMaxDimension> tip = {};
+  for (std::size_t c = 0; c < tip.size(); ++c) {
+    tip[c] = sample.point[c] - tooth_length * std::abs(sample.kappa) * sample.normal[c];
+  }
+  return tip;
+}
+
 std::vector<PlotPanel> CurvaturePanels(const std::vector<NamedCurve>& curves) {
   constexpr int kMostSamples = 20'000;
   std::vector<Samples> all;
-  double largest = 0.0, side = 0.0;
   for (const NamedCurve& named : curves) {
-    const int spans = named.curve.basis().num_domain_spans();
-    all.push_back(SampleCurvature(named.curve, std::clamp(kMostSamples / spans, 2, 24)));
-    largest = std::max(largest, UsualCurvature(all.back()));
-    side = std::max(side, LongestSide(all.back()));
+    all.push_back(SampleCurvatureUpTo(named.curve, kMostSamples));
   }
-  constexpr double kLongestTooth = 0.15;  // of the curve's longest side
-  const double tooth = largest > 0.0 ? kLongestTooth * side / largest : 0.0;
+  const double tooth = ToothLength(all);
   std::vector<PlotPanel> panels;
   PlotPanel curvature;
   curvature.title = "curvature";

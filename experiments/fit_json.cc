@@ -5,6 +5,7 @@
 
 #include "cost_functions/options.h"
 #include "experiments/build_info.h"
+#include "experiments/curvature_figure.h"
 #include "experiments/fit_report.h"
 #include "problems/curve_constraints.h"
 #include "solvers/plugin_loader.h"
@@ -103,6 +104,30 @@ Json FairnessJson(const FitReport& report) {
           {"inflections", plane ? Json(fairness.inflections) : Json(nullptr)}};
 }
 
+/// What draws the curvature and its comb, as columns: samples as the figure's, but fewer.
+Json CurvatureJson(const Problem& problem, const RunResult& run, const FitReport& report) {
+  if (!report.fairness.has_value()) return nullptr;
+  constexpr int kMostSamplesWritten = 1000;
+  const BsplineCurve curve = problem.curve_fit()->Curve(run.x);
+  const std::vector<CurvatureSample> samples = SampleCurvatureUpTo(curve, kMostSamplesWritten);
+  const double tooth_length = ToothLength({samples});
+  Json json = {{"t", Json::array()},     {"arc_length", Json::array()},
+               {"kappa", Json::array()}, {"points", Json::array()},
+               {"tips", Json::array()},  {"tooth_length", tooth_length}};
+  for (const CurvatureSample& sample : samples) {
+    const bool is_known = std::isfinite(sample.kappa);
+    const std::array<double, kMaxDimension> tip = ToothTip(sample, tooth_length);
+    json["t"].push_back(sample.t);
+    json["arc_length"].push_back(sample.s);
+    json["kappa"].push_back(is_known ? Json(sample.kappa) : Json(nullptr));
+    json["points"].push_back(std::vector<double>(sample.point, sample.point + curve.dimension()));
+    json["tips"].push_back(
+        is_known ? Json(std::vector<double>(tip.begin(), tip.begin() + curve.dimension()))
+                 : Json(nullptr));
+  }
+  return json;
+}
+
 Json FairingChoiceJson(const FitReport& report) {
   if (!report.fairing_choice.has_value()) return nullptr;
   const FairingChoice& choice = *report.fairing_choice;
@@ -133,6 +158,7 @@ Json Header(const Problem& problem, const RunResult& run, const RunSpec& spec,
                       {"num_ties", report.num_ties.has_value() ? Json(*report.num_ties) : Json()}};
   json["shape"] = ShapeJson(report);
   json["fairness"] = FairnessJson(report);
+  json["curvature"] = CurvatureJson(problem, run, report);
   json["fairing_choice"] = FairingChoiceJson(report);
   const CurveFit* const fit = problem.curve_fit();
   const bool weighs_spans = fit != nullptr && !fit->spec().span_weights.empty();

@@ -314,6 +314,62 @@ TEST(FitJson, ReadsBackToTheSameNumbers) {
   EXPECT_EQ(json["seconds"].get<double>(), run.seconds);
 }
 
+TEST(FitJson, HasTheCurvatureAndItsComb) {
+  FitSpec spec;
+  spec.closed = true;
+  spec.control_points = 9;
+  const auto problem = MakeProblem(Zigzag(31), spec);
+  const RunResult run = RunSolver(*problem, "banded_qr", {});
+  const FitReport report = MeasureFit(*problem, run, {});
+  const Json json = Json::parse(FitJson(*problem, run, {}, report));
+  const Json& curvature = json["curvature"];
+  constexpr std::size_t kSamples = 9 * 25;
+  for (const char* key : {"t", "arc_length", "kappa", "points", "tips"}) {
+    EXPECT_EQ(curvature[key].size(), kSamples) << key;
+  }
+  EXPECT_NEAR(curvature["arc_length"][kSamples - 1].get<double>(), report.shape->length,
+              1e-4 * report.shape->length);
+  const BsplineCurve curve = problem->curve_fit()->Curve(run.x);
+  const double tooth_length = curvature["tooth_length"].get<double>();
+  ASSERT_GT(tooth_length, 0.0);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    double values[3 * 2];
+    curve.EvaluateUpTo(curvature["t"][i].get<double>(), 2, values);
+    const double kappa = (values[2] * values[5] - values[3] * values[4]) /
+                         std::pow(std::hypot(values[2], values[3]), 3);
+    EXPECT_NEAR(curvature["kappa"][i].get<double>(), kappa, 1e-9 * report.fairness->max_curvature);
+    const auto point = curvature["points"][i].get<std::vector<double>>();
+    const auto tip = curvature["tips"][i].get<std::vector<double>>();
+    const double size = 1e-12 * report.shape->length;
+    EXPECT_NEAR(point[0], values[0], size);
+    EXPECT_NEAR(point[1], values[1], size);
+    // Across the curve, by its curvature, to the right of a left turn.
+    const double x = tip[0] - point[0], y = tip[1] - point[1];
+    EXPECT_NEAR((values[2] * y - values[3] * x) / std::hypot(values[2], values[3]),
+                -tooth_length * kappa, 1e-6 * tooth_length * report.fairness->max_curvature);
+  }
+  const Json& fairness = json["fairness"];
+  EXPECT_GT(fairness["num_curvature_extrema"].get<int>(), 0);
+  EXPECT_EQ(fairness["extreme_curvatures"].size(), fairness["curvature_extrema"].size());
+  EXPECT_EQ(fairness["extreme_curvatures"][0], report.fairness->curvature_extrema[0].kappa);
+}
+
+TEST(FitJson, HasAThousandSamplesOfTheCurvatureAtMost) {
+  for (const int n : {100, 700, 3000}) {
+    FitSpec spec;
+    spec.control_points = n;
+    const auto problem = MakeProblem(Zigzag(n + 1), spec);
+    const RunResult run = RunSolver(*problem, "banded_qr", {});
+    const Json json = Json::parse(FitJson(*problem, run, {}, MeasureFit(*problem, run, {})));
+    const auto t = json["curvature"]["t"].get<std::vector<double>>();
+    EXPECT_GT(t.size(), 900U);
+    EXPECT_LE(t.size(), 1000U);
+    EXPECT_TRUE(std::is_sorted(t.begin(), t.end()));
+    EXPECT_EQ(t.front(), problem->curve_fit()->basis().domain_begin());
+    EXPECT_EQ(t.back(), problem->curve_fit()->basis().domain_end());
+  }
+}
+
 TEST(FitJson, SaysWhatWasRunAndHowItEnded) {
   const auto problem = MakeProblem(Zigzag(40), {});
   const RunResult run = RunSolver(*problem, "lbfgs/memory=5", {});

@@ -131,7 +131,7 @@ TEST_F(Figures, OfAnotherRuleAreNotTakenOver) {
 TEST_F(Figures, AndAllBesideThemAreNotLeftBehindByAFullDisk) {
   // Few control points: the picture is the largest file then.
   std::vector<std::string> arguments = FitArguments();
-  arguments.push_back("--control_points=20");
+  arguments.push_back("--control_points=4");
   ASSERT_EQ(RunBatten(arguments).status, 0);
   const auto size = std::filesystem::file_size(svg_);
   for (const std::string& name : folder_.Names()) {
