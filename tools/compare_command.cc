@@ -96,6 +96,7 @@ int RunCompare(const std::vector<std::string>& positional, CommandOutput* output
                   output);
   }
   std::string* const error = &output->error;
+  if (!CheckRunFlags(error)) return kBadInput;
   ComparisonSpec spec;
   spec.run = RunSpecFromFlags();
   spec.repetitions = FLAGS_repetitions;

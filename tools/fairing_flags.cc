@@ -26,15 +26,50 @@ DEFINE_string(fairing_figure, "",
 namespace batten {
 namespace {
 
-/// Terms that have units; those that say theirs keep them.
+/// A term that has units and does not say them.
+bool TakesUnits(const NameSpec& term) {
+  const bool has_units =
+      term.name == "fairing" || term.name == "end_tangent" || term.name == "end_curvature";
+  return has_units && std::none_of(term.options.begin(), term.options.end(),
+                                   [](const auto& option) { return option.first == "units"; });
+}
+
+bool AddsFairing(const FitSpec& spec) {
+  return WasGiven("fairing") &&
+         std::none_of(spec.terms.begin(), spec.terms.end(),
+                      [](const NameSpec& term) { return term.name == "fairing"; });
+}
+
 void ApplyUnits(FitSpec* spec) {
-  for (NameSpec& term : spec->terms) {
-    const bool has_units =
-        term.name == "fairing" || term.name == "end_tangent" || term.name == "end_curvature";
-    const bool says = std::any_of(term.options.begin(), term.options.end(),
-                                  [](const auto& option) { return option.first == "units"; });
-    if (has_units && !says) term.options.emplace_back("units", FLAGS_fairing_units);
+  if (AddsFairing(*spec)) {
+    // What the choice of the weight would add by itself, without units.
+    if (spec->terms.empty()) spec->terms.push_back({"interpolation", {}, nullptr});
+    spec->terms.push_back({"fairing", {}, nullptr});
   }
+  for (NameSpec& term : spec->terms) {
+    if (TakesUnits(term)) term.options.emplace_back("units", FLAGS_fairing_units);
+  }
+}
+
+/// Flags of fairing terms where there are none.
+bool CheckFairingTerms(const FitSpec& spec, std::string* error) {
+  const bool adds_fairing = AddsFairing(spec);
+  if (WasGiven("fairing_units") && !adds_fairing &&
+      std::none_of(spec.terms.begin(), spec.terms.end(), TakesUnits)) {
+    *error = RefusedFlag("fairing_units", FLAGS_fairing_units,
+                         "nothing, without --fairing or a term fairing, end_tangent or "
+                         "end_curvature that does not say its units");
+    return false;
+  }
+  const bool has_fairing = std::any_of(
+      spec.terms.begin(), spec.terms.end(),
+      [](const NameSpec& term) { return term.name == "fairing" || term.name == "curve_fairing"; });
+  if (WasGiven("span_weights") && !adds_fairing && !has_fairing && !spec.guard.has_value()) {
+    *error = RefusedFlag("span_weights", FLAGS_span_weights,
+                         "nothing, without --fairing, a fairing term or a guard");
+    return false;
+  }
+  return true;
 }
 
 bool ApplySpanWeights(FitSpec* spec, std::string* error) {
@@ -54,7 +89,7 @@ std::vector<FlagInfo> FairingFlags() {
           TextFlag("fairing_figure", "FILE", "NAME.svg")};
 }
 
-bool CheckFairingFlags(std::string* error) {
+bool CheckFairingFlags(const FitSpec& spec, std::string* error) {
   const bool needs_noise = FLAGS_fairing == "discrepancy";
   if (needs_noise != WasGiven("noise")) {
     *error = needs_noise ? "--fairing: discrepancy needs --noise, the points' standard deviation"
@@ -66,7 +101,7 @@ bool CheckFairingFlags(std::string* error) {
     *error = RefusedFlag("fairing_figure", FLAGS_fairing_figure, "nothing, without --fairing");
     return false;
   }
-  return true;
+  return CheckFairingTerms(spec, error);
 }
 
 bool ApplyFairingFlags(const std::string& source, const DataSet& data, FitSpec* spec,

@@ -16,8 +16,9 @@ namespace batten {
 
 /// --fairing, --noise, --fairing_units, --span_weights, --fairing_figure.
 std::vector<FlagInfo> FairingFlags();
-/// Flags that go together; false with one sentence in `error`.
-bool CheckFairingFlags(std::string* error);
+/// Flags that go together, and with the terms and the guard of `spec`, so that none is without
+/// effect; false with one sentence in `error`.
+bool CheckFairingFlags(const FitSpec& spec, std::string* error);
 /// Units and weights of the spans into the fairing terms, and the weight that --fairing chooses
 /// from `data`, with how in *choice. `source`: what messages about the fit begin with.
 bool ApplyFairingFlags(const std::string& source, const DataSet& data, FitSpec* spec,

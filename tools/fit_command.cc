@@ -271,6 +271,7 @@ int RunFit(const std::vector<std::string>& positional, CommandOutput* output) {
   }
   if (!CheckOutputs(Outputs(), request.input_files, error)) return kBadInput;
   if (AsksForMaxDistance()) return SearchAndWrite(request, output);
+  if (!CheckRunFlags(error)) return kBadInput;
   RunSpec spec = RunSpecFromFlags();
   spec.keep_iterates = WasGiven("iterates");
   // Without its file the trace only tells the observed rate, which is not worth all memory.

@@ -254,11 +254,12 @@ bool MakeFitRequest(const std::vector<std::string>& positional, FitRequest* requ
     spec->parameters.reset();
     if (FromString(FLAGS_parameters, &rule)) spec->parameters = rule;
   }
-  if (!CheckFairingFlags(error)) return false;
   if (!ApplyKnots(request, error) || !ApplyDomain(spec, error) || !ApplyTerms(spec, error) ||
       !ApplyGuardFlag(spec, error) || !ApplyConstraints(spec, error)) {
     return false;
   }
+  // A search for a distance refuses them all.
+  if (!AsksForMaxDistance() && !CheckFairingFlags(*spec, error)) return false;
   if (spec->given_knots.empty() && !AsksForMaxDistance()) {
     const int fewest = spec->closed ? 1 : spec->degree + 1;
     if (spec->control_points < fewest) {

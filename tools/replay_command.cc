@@ -194,7 +194,7 @@ int RunReplay(const std::vector<std::string>& positional, CommandOutput* output)
   std::string* const error = &output->error;
   NameSpec solver, other;
   CatalogueEntry entry;
-  if (!OneSolver("solver", FLAGS_solver, &solver, error) ||
+  if (!CheckRunFlags(error) || !OneSolver("solver", FLAGS_solver, &solver, error) ||
       !OneSolver("against", WasGiven("against") ? FLAGS_against : FLAGS_solver, &other, error)) {
     return kBadInput;
   }

@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include <limits>
+#include <utility>
 
 #include "solvers/solver_registry.h"
 
@@ -50,6 +51,16 @@ std::vector<FlagInfo> RunFlags() {
           NumberFlag("seed", "N", 0.0, kLargestSeed),
           NumberFlag("threads", "N", 1.0, 1024.0),
           SwitchFlag("compile")};
+}
+
+bool CheckRunFlags(std::string* error) {
+  for (const auto& [flag, value] :
+       {std::pair("native_step", FLAGS_native_step), {"native_gradient", FLAGS_native_gradient}}) {
+    if (FLAGS_mode == "native" || !WasGiven(flag)) continue;
+    *error = RefusedFlag(flag, NumberText(value), "nothing, without --mode=native");
+    return false;
+  }
+  return true;
 }
 
 RunSpec RunSpecFromFlags() {

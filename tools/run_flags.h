@@ -17,6 +17,8 @@ namespace batten {
 
 /// How solvers are run: --mode, the stop rule's numbers, --seed, --threads, --compile.
 std::vector<FlagInfo> RunFlags();
+/// False with one sentence in `error` for the number of a rule that --mode does not use.
+bool CheckRunFlags(std::string* error);
 RunSpec RunSpecFromFlags();
 
 /// The solvers of a list in the grammar, each with options that it has; `all` in it stands for all

@@ -245,5 +245,53 @@ TEST(FitCommand, RefusesFairingThatItCannotChoose) {
          {"found 2 weights of spans", "the curve has 1 spans"});
 }
 
+TEST(FitCommand, RefusesFlagsOfFairingWithoutAnyToApplyThemTo) {
+  const auto refuse = [](const std::vector<std::string>& flags,
+                         const std::vector<std::string>& parts) {
+    ExpectRefused(FitText(kSixPoints, flags), parts);
+  };
+  const auto accept = [](const std::vector<std::string>& flags) {
+    const Ended ended = FitText(kSixPoints, flags);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+  };
+  for (const std::string units : {"source", "scale_free"}) {
+    const std::string flag = "--fairing_units=" + units;
+    const std::vector<std::string> parts = {"--fairing_units: found \"" + units + "\"",
+                                            "allowed: nothing, without --fairing or a term"};
+    refuse({flag}, parts);
+    refuse({flag, "--terms=interpolation"}, parts);
+    refuse({flag, "--guard=bending"}, parts);
+    refuse({flag, "--terms=interpolation,curve_fairing"}, parts);
+    refuse({flag, "--terms=interpolation,fairing/units=source"}, parts);
+    accept({flag, "--terms=interpolation,fairing"});
+    accept({flag, "--terms=interpolation,end_tangent"});
+    accept({flag, "--fairing=discrepancy", "--noise=0.6", "--solver=banded_qr"});
+  }
+  const std::vector<std::string> parts = {"--span_weights: found ", "allowed: nothing, without"};
+  refuse({"--span_weights=2"}, parts);
+  refuse({"--span_weights=2", "--terms=interpolation,end_tangent"}, parts);
+  refuse({"--span_weights=2", "--guard=none"}, parts);
+  refuse({"--span_weights=no_such_file"}, parts);
+  accept({"--span_weights=2", "--guard=bending"});
+  accept({"--span_weights=2", "--terms=interpolation,fairing"});
+  accept({"--span_weights=2", "--terms=interpolation,curve_fairing"});
+  accept({"--span_weights=2", "--fairing=discrepancy", "--noise=0.6", "--solver=banded_qr"});
+}
+
+TEST(FitCommand, RefusesNumbersOfARuleThatTheModeDoesNotUse) {
+  for (const std::string command : {"fit", "compare", "replay"}) {
+    const auto refuse = [&](const std::vector<std::string>& flags,
+                            const std::vector<std::string>& parts) {
+      std::vector<std::string> arguments = {command};
+      if (command != "compare") arguments.emplace_back("--problem=rhino");
+      arguments.insert(arguments.end(), flags.begin(), flags.end());
+      ExpectRefused(RunBatten(arguments), parts);
+    };
+    refuse({"--native_step=1e-3"},
+           {"--native_step: found 0.001", "nothing, without --mode=native"});
+    refuse({"--native_gradient=0.5"}, {"--native_gradient: found 0.5", "without --mode=native"});
+  }
+}
+
 }  // namespace
 }  // namespace batten

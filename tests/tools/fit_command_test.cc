@@ -347,6 +347,16 @@ TEST(FitCommand, WarnsOfAWeightAtAnEndOfTheScan) {
   EXPECT_THAT(fit["fairing_choice"]["warning"].get<std::string>(), HasSubstr("heaviest"));
 }
 
+TEST(FitCommand, GivesTheUnitsToTheFairingTermThatARuleAdds) {
+  const auto term = [](const std::string& units) {
+    const json fit = FitJson({kRhino, "--closed", "--control_points=80", "--fairing=gcv",
+                              "--solver=banded_qr", "--fairing_units=" + units});
+    return fit["terms"][1]["name"].get<std::string>();
+  };
+  EXPECT_THAT(term("source"), HasSubstr("units=source"));
+  EXPECT_THAT(term("scale_free"), HasSubstr("units=scale_free"));
+}
+
 TEST(FitCommand, HoldsConstraintsAndWeighsSpans) {
   const json held = FitJson({kRhino, "--control_points=20", "--solver=banded_qr",
                              "--constraints=point/t=0/x=100/y=50,natural"});
