@@ -103,7 +103,6 @@ bool CheckOpposites(const ConstraintFamily& constraints, const Linearized& all,
   return true;
 }
 
-/// Names of the linear constraints whose gradients add up to `force`, a vector of all variables.
 std::set<std::string> NamesOf(const std::vector<LinearConstraint>& linear,
                               const Eigen::VectorXd& force) {
   // Those that have to do with it: all others would only make the matrix larger.
@@ -171,7 +170,7 @@ std::string ContradictionMessage(const ConstraintFamily& constraints,
   constexpr double kRounding = 1e-9;
   const Eigen::VectorXd force = all.by_all.transpose() * combination;
   std::string beside;
-  if (force.norm() > kRounding * largest) beside = Listed(NamesOf(linear, force));
+  if (force.norm() > kRounding * largest) beside = LinearConstraintsOf(linear, force);
   if (!beside.empty()) beside = " the linear constraints " + beside;
   if (names.size() > 1) {
     return "constraints " + Listed(names) + " contradict each other" +
@@ -182,6 +181,11 @@ std::string ContradictionMessage(const ConstraintFamily& constraints,
 }
 
 }  // namespace
+
+std::string LinearConstraintsOf(const std::vector<LinearConstraint>& linear,
+                                const Eigen::VectorXd& force) {
+  return Listed(NamesOf(linear, force));
+}
 
 Violation MeasureViolation(const Problem& problem, const Eigen::VectorXd& x) {
   Violation violation;

@@ -39,6 +39,11 @@ bool MakeLagrangianGradient(const Problem& problem, const Eigen::VectorXd& x,
 bool ProjectOntoConstraints(const Problem& problem, const Eigen::VectorXd& multipliers,
                             Eigen::VectorXd* y);
 
+/// Names, quoted and with "and" between, of the linear constraints whose gradients add up to
+/// `force`, a vector of all variables. Empty: none do.
+std::string LinearConstraintsOf(const std::vector<LinearConstraint>& linear,
+                                const Eigen::VectorXd& force);
+
 /// Whether no equations contradict each other or the problem's `linear` constraints wherever the
 /// variables are: a combination of them that does not depend on the free variables and is not zero.
 /// Else false, with one sentence that names them, linear ones too, in `error`.

@@ -10,6 +10,7 @@
 
 #include "problems/constraint_projection.h"
 #include "problems/curve_constraints.h"
+#include "problems/curve_speeds.h"
 #include "problems/fit_guard.h"
 #include "problems/robust_start.h"
 
@@ -231,6 +232,7 @@ bool AddConditions(const CurveFit& fit, const std::vector<LinearConstraint>& lin
     problem->AddVariables(kConstraintParameters, made.start);
     if (!problem->SetLinearConstraints(linear, error)) return false;
   }
+  if (!CheckSpeeds(fit.setting(), made.conditions, *problem, linear, error)) return false;
   problem->SetNonlinearConstraints(
       std::make_shared<CurveConditionFamily>(fit.setting(), std::move(made.conditions)));
   return CheckForContradictions(*problem, linear, error);

@@ -396,6 +396,34 @@ TEST(NonlinearConstraints, ThatContradictEachOtherAreNamed) {
   EXPECT_EQ(WhyNot(Constrained(3, 8, "point/free=1/x=0/y=1,point/free=2/x=0/y=2")), "");
 }
 
+TEST(NonlinearConstraints, OfCurvaturesWhereTheCurveStandsStillAreRefused) {
+  // A periodic polynomial is constant.
+  EXPECT_EQ(WhyNot(Constrained(2, 3, "periodic,curvature/t=0.3/kappa=0")),
+            "constraint \"curvature/t=0.3/kappa=0\" holds a curvature where C' is 0 by the linear "
+            "constraints \"periodic in derivative 0 (x)\" and \"periodic in derivative 0 (y)\" and "
+            "\"periodic in derivative 1 (x)\" and \"periodic in derivative 1 (y)\"");
+  for (int degree : {3, 5}) {
+    EXPECT_THAT(WhyNot(Constrained(degree, degree + 1, "periodic,curvature/t=0.5/kappa=0")),
+                HasSubstr("holds a curvature where C' is 0 by the linear constraints \"periodic"));
+    EXPECT_THAT(
+        WhyNot(Constrained(degree, degree + 1, "periodic,curvature/free=1/kappa=2")),
+        HasSubstr("where the curve is a single point by the linear constraints \"periodic"));
+  }
+  // With one knot in the middle it is even about it.
+  EXPECT_THAT(WhyNot(Constrained(3, 5, "periodic,curvature/t=0.5/kappa=0")),
+              HasSubstr("\"curvature/t=0.5/kappa=0\" holds a curvature where C' is 0"));
+  EXPECT_EQ(WhyNot(Constrained(3, 5, "periodic,curvature/t=0.3/kappa=0")), "");
+  EXPECT_EQ(WhyNot(Constrained(3, 5, "periodic,curvature/free=1/kappa=0")), "");
+  EXPECT_EQ(WhyNot(Constrained(3, 6, "periodic,curvature/t=0.5/kappa=0")), "");
+  EXPECT_THAT(WhyNot(Constrained(3, 8, "derivative/t=0.4/x=0/y=0,curvature/t=0.4/kappa=1")),
+              EndsWith("C' is 0 by the linear constraints \"derivative/t=0.4/x=0/y=0 (x)\" and "
+                       "\"derivative/t=0.4/x=0/y=0 (y)\""));
+  EXPECT_EQ(WhyNot(Constrained(3, 8, "derivative/t=0.4/x=0,curvature/t=0.4/kappa=1")), "");
+  FitSpec one = Constrained(3, 1, "curvature/t=0.5/kappa=1");
+  one.closed = true;
+  EXPECT_THAT(WhyNot(one), EndsWith("C' is 0, wherever the control points are"));
+}
+
 TEST(NonlinearConstraints, ThatTheCurveCannotMeetAreRefused) {
   EXPECT_EQ(WhyNot(Constrained(3, 8, "tangent/x=1/y=0")),
             "constraint tangent/x=1/y=0 has no t; allowed: 0 to 1, or free=1 to 99 for a parameter "

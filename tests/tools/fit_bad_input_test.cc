@@ -218,6 +218,10 @@ TEST(FitCommand, RefusesConstraintsThatItCannotMeet) {
   refuse("point/t=0/u=1", {"--constraints: point has no option \"u\"", "known: "});
   refuse("point/t=2/x=1", {"has t = 2", "allowed: 0 to 1"});
   refuse("point/t=0/x=1,ends", {"point/t=0/x=1 (x)", "ends at the begin (x)", "contradict"});
+  // Of one span it leaves a point.
+  refuse(
+      "periodic,curvature/t=0.5/kappa=0",
+      {"\"curvature/t=0.5/kappa=0\" holds a curvature where C' is 0", "periodic in derivative 0"});
 }
 
 TEST(FitCommand, RefusesFairingThatItCannotChoose) {
