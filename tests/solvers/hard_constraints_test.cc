@@ -146,6 +146,28 @@ TEST(CurveConstraints, NaturalEndsOfACubicThroughItsDataAreTheKnownSpline) {
   EXPECT_NEAR(CurveAt(*problem, x, 1, 0)[1], 1.0, 1e-13);
 }
 
+TEST(CurveConstraints, HoldADerivativeOverItsLargestCoefficientToRounding) {
+  // docs/constraints.md: at the ends of n uniform spans max |N_j''| is 9 n^2 (and |N_j'| 3 n).
+  const int spans = 997;
+  DataSet data;
+  data.name = "wave";
+  data.points.resize(2 * spans, 2);
+  const double far = 1e3;
+  for (int i = 0; i < 2 * spans; ++i) data.points.row(i) << far + i, far * std::sin(0.01 * i);
+  const double largest = far + 2 * spans;
+  for (const char* solver : {"banded_qr", "lbfgs"}) {
+    const auto problem =
+        MakeFit(data, WithConstraints(MakeSpec(3, false, spans + 3), "natural,clamped/x=2000/y=5"));
+    const Eigen::VectorXd x = Solve(*problem, solver);
+    for (const double t : {0.0, 1.0}) {
+      const double allowed = 8.0 * kEpsilon * largest;
+      EXPECT_LE(CurveAt(*problem, x, t, 2).cwiseAbs().maxCoeff() / (9.0 * spans * spans), allowed);
+      EXPECT_NEAR(CurveAt(*problem, x, t, 1)[0] / (3.0 * spans), 2000.0 / (3.0 * spans), allowed);
+      EXPECT_NEAR(CurveAt(*problem, x, t, 1)[1] / (3.0 * spans), 5.0 / (3.0 * spans), allowed);
+    }
+  }
+}
+
 TEST(CurveConstraints, NotAKnotMakesOneCubicOfTheFirstTwoSpans) {
   // Five points of a cubic: with not-a-knot at both inner knots the spline is the cubic itself.
   const auto cubic = [](double t) { return t * t * t - 2.0 * t * t + 0.5; };
