@@ -18,6 +18,7 @@ struct RuleWord {
   const char* word;
 };
 constexpr RuleWord kRuleWords[] = {{FairingRule::kGcv, "gcv"},
+                                   {FairingRule::kRisk, "risk"},
                                    {FairingRule::kDiscrepancy, "discrepancy"},
                                    {FairingRule::kLCurve, "lcurve"}};
 
@@ -102,7 +103,16 @@ bool FromString(const std::string& text, FairingRule* rule) {
   return false;
 }
 
+bool NeedsNoise(FairingRule rule) {
+  return rule == FairingRule::kRisk || rule == FairingRule::kDiscrepancy;
+}
+
 std::string FairingChoiceWarning(const FairingChoice& choice) {
+  constexpr double kEqual = 1e-6;
+  if (choice.rule == FairingRule::kDiscrepancy && choice.chosen.score > 1.0 + kEqual) {
+    return "fairing=discrepancy: the residuals show more than the noise at every weight, by no "
+           "more than chance can; the weight is the one at which they show least";
+  }
   if (choice.end == 0) return "";
   const std::string end = choice.end < 0 ? "lightest" : "heaviest";
   return "fairing=" + std::string(ToString(choice.rule)) + " is best at the " + end +

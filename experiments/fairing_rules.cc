@@ -23,21 +23,36 @@ class Chooser {
 
   bool Choose(FairingChoice* choice, std::string* error) {
     if (!Scan(error)) return false;
+    if (!std::isfinite(Least().score)) {
+      *error = Named() + " finds no weight at which the residuals have any freedom left";
+      return false;
+    }
     double weight = 0.0;
-    const bool found = rule_ == FairingRule::kGcv           ? ChooseByGcv(&weight, error)
-                       : rule_ == FairingRule::kDiscrepancy ? ChooseByDiscrepancy(&weight, error)
-                                                            : ChooseByLCurve(&weight, error);
+    bool found = true;
+    if (rule_ == FairingRule::kLCurve) {
+      found = ChooseByLCurve(&weight, error);
+    } else if (rule_ == FairingRule::kDiscrepancy) {
+      found = ChooseByDiscrepancy(&weight, error);
+    } else {
+      weight = FindLeast().weight;
+    }
     if (!found) return false;
     choice->rule = rule_;
     choice->weight = weight;
+    SortSamples();
     choice->samples = samples_;
-    std::sort(choice->samples.begin(), choice->samples.end(),
-              [](const auto& a, const auto& b) { return a.weight < b.weight; });
     Describe(choice);
     return true;
   }
 
  private:
+  std::string Named() const { return std::string("fairing=") + ToString(rule_); }
+
+  void SortSamples() {
+    std::sort(samples_.begin(), samples_.end(),
+              [](const auto& a, const auto& b) { return a.weight < b.weight; });
+  }
+
   void Describe(FairingChoice* choice) const {
     bool is_lightest = true, is_heaviest = true;
     for (const FairingSample& sample : choice->samples) {
@@ -74,14 +89,14 @@ class Chooser {
   }
 
   double Score(const FairingSample& sample) const {
-    if (rule_ == FairingRule::kDiscrepancy) {
-      return sample.residual / (num_residuals_ * noise_ * noise_);
-    }
     if (rule_ == FairingRule::kLCurve) return 0.0;  // known once neighbours are
-    // Where fewer degrees of freedom are left than roundings of the trace are worth, V is 0 / 0.
-    constexpr double kLeastFreedom = 1e-6;
     const double freedom = Freedom(sample);
+    const double of_noise = sample.residual / (num_residuals_ * noise_ * noise_);
+    if (rule_ == FairingRule::kRisk) return of_noise + 2.0 * (1.0 - freedom);
+    // Where fewer degrees of freedom are left than roundings of the trace are worth, it is 0 / 0.
+    constexpr double kLeastFreedom = 1e-6;
     if (!(freedom > kLeastFreedom)) return std::numeric_limits<double>::infinity();
+    if (rule_ == FairingRule::kDiscrepancy) return of_noise / freedom;
     return sample.residual / num_residuals_ / (freedom * freedom);
   }
 
@@ -104,14 +119,13 @@ class Chooser {
         if (i == 0) continue;
         const double change = std::abs(samples_.back().trace - before);
         if (change < kSettled * step * before) break;
-        // The way back from four times the least V would be a second minimum of a wild curve.
+        // The way back from four times the least would be a second minimum of a wild curve.
         constexpr double kFarAbove = 4.0;
-        const bool is_far = rule_ == FairingRule::kGcv && score > kFarAbove * Least().score;
+        const bool is_far = LooksForTheLeast() && score > kFarAbove * Least().score;
         if (is_far && i > 1) break;
       }
     }
-    std::sort(samples_.begin(), samples_.end(),
-              [](const auto& a, const auto& b) { return a.weight < b.weight; });
+    SortSamples();
     return true;
   }
 
@@ -125,49 +139,80 @@ class Chooser {
                              [](const auto& a, const auto& b) { return a.score < b.score; });
   }
 
-  bool ChooseByGcv(double* weight, std::string* error) {
+  bool LooksForTheLeast() const {
+    return rule_ == FairingRule::kGcv || rule_ == FairingRule::kRisk;
+  }
+
+  /// The sample of the least score, after a closer look where the scan's samples enclose it and not
+  /// at the data's end or the fair end.
+  const FairingSample& FindLeast() {
     const std::vector<FairingSample> scan = samples_;
     const auto least = static_cast<std::size_t>(
         std::min_element(scan.begin(), scan.end(),
                          [](const auto& a, const auto& b) { return a.score < b.score; }) -
         scan.begin());
-    if (!std::isfinite(scan[least].score)) {
-      *error = "fairing=gcv finds no weight at which the residuals have any freedom left";
+    const auto log_of = [&](std::size_t i) { return std::log10(scan[i].weight); };
+    if (least > 0 && least + 1 < scan.size()) {
+      // Scores are flat at their minimum: 1e-4 of a decade is worth 1e-8 of it.
+      constexpr double kTolerance = 1e-4;
+      constexpr int kMostCalls = 20;
+      BrentMinimum([this](double place) { return Evaluate(place); }, log_of(least - 1),
+                   log_of(least), scan[least].score, log_of(least + 1), kTolerance, kMostCalls);
+    }
+    return Least();
+  }
+
+  /// Number of samples, which are in order, up to the heaviest one whose residuals are explained by
+  /// the noise.
+  std::size_t NumUpToExplained() const {
+    std::size_t count = samples_.size();
+    while (count > 0 && !(samples_[count - 1].score <= 1.0)) --count;
+    return count;
+  }
+
+  /// With little fairing the score is that of a mere estimate of the noise, about 1, and crosses 1
+  /// by chance, or never; from its least value on it grows with what fairing takes away of the
+  /// shape. So the heaviest crossing is the one that says something.
+  bool ChooseByDiscrepancy(double* weight, std::string* error) {
+    std::size_t right = NumUpToExplained();
+    if (right == samples_.size()) {
+      *error = Named() + ": the squared residuals of the fairest curve are " +
+               NumberText(samples_.back().score) + " times what the noise makes; give a smaller " +
+               "noise";
       return false;
     }
-    const auto log_of = [&](std::size_t i) { return std::log10(scan[i].weight); };
-    *weight = scan[least].weight;
-    if (least == 0 || least + 1 == scan.size()) return true;  // the data's end or the fair end
-    // V is flat at its minimum: 1e-4 of a decade is worth 1e-8 of it.
-    constexpr double kTolerance = 1e-4;
-    constexpr int kMostCalls = 20;
-    const auto found =
-        BrentMinimum([this](double place) { return Evaluate(place); }, log_of(least - 1),
-                     log_of(least), scan[least].score, log_of(least + 1), kTolerance, kMostCalls);
-    *weight = std::pow(10.0, found.first);
+    if (right == 0) {
+      *weight = FindLeast().weight;  // the scan's steps are wide: it may still be below 1
+      SortSamples();
+      right = NumUpToExplained();
+      if (right == 0) return IsByChance(Least(), error);
+    }
+    *weight = Crossing(samples_[right - 1], samples_[right]);
     return true;
   }
 
-  /// RSS grows with the weight: the place by bisection and secants (Illinois) in logarithms.
-  bool ChooseByDiscrepancy(double* weight, std::string* error) {
-    const auto log_score = [](double score) { return std::log10(std::max(score, 1e-300)); };
-    std::size_t right = 0;
-    while (right < samples_.size() && log_score(samples_[right].score) < 0.0) ++right;
-    if (right == 0 || right == samples_.size()) {
-      const FairingSample& end = right == 0 ? samples_.front() : samples_.back();
-      *error = std::string("fairing=discrepancy: the squared residuals of the ") +
-               (right == 0 ? "curve without fairing are " : "fairest curve are ") +
-               NumberText(end.score) + " times what the noise makes; give " +
-               (right == 0 ? "a larger" : "a smaller") + " noise";
-      return false;
-    }
-    double a = std::log10(samples_[right - 1].weight), b = std::log10(samples_[right].weight);
-    double fa = log_score(samples_[right - 1].score), fb = log_score(samples_[right].score);
+  /// Whether residuals can be so large by chance: squares of k normal errors vary by sqrt(2 / k).
+  bool IsByChance(const FairingSample& least, std::string* error) const {
+    constexpr double kDeviations = 3.0;
+    const double variation = std::sqrt(2.0 / (num_residuals_ * Freedom(least)));
+    if (least.score <= 1.0 + kDeviations * variation) return true;
+    *error = Named() +
+             ": the squared residuals are at each weight, without fairing too, at least " +
+             NumberText(least.score) + " times what the noise makes; give a larger noise";
+    return false;
+  }
+
+  /// The weight between two samples at which the score is 1, by secants (Illinois) in logarithms.
+  double Crossing(FairingSample left, FairingSample right) {
+    const auto log_score = [](double score) {
+      return std::log10(std::clamp(score, 1e-300, 1e300));
+    };
+    double a = std::log10(left.weight), b = std::log10(right.weight);
+    double fa = log_score(left.score), fb = log_score(right.score);
     constexpr double kTolerance = 1e-8;
     constexpr int kMostCalls = 40;
-    double place = b;
     for (int call = 0; call < kMostCalls; ++call) {
-      place = (a * fb - b * fa) / (fb - fa);
+      const double place = (a * fb - b * fa) / (fb - fa);
       const double value = log_score(Evaluate(place));
       if (std::abs(value) < kTolerance) break;
       if (value * fb < 0.0) {
@@ -179,8 +224,7 @@ class Chooser {
       b = place;
       fb = value;
     }
-    *weight = std::pow(10.0, place);
-    return true;
+    return samples_.back().weight;
   }
 
   /// Curvature of the L at the middle of three of its places, by the circle through them, positive
@@ -231,7 +275,7 @@ class Chooser {
     if (corner == 0) {
       *error =
           "fairing=lcurve finds no corner where residuals have freedom left and trade with the "
-          "bend; use gcv or discrepancy, or give a weight";
+          "bend; use another rule or give a weight";
       return false;
     }
     // Twice as dense around it, then the top of the parabola through the three curvatures there.

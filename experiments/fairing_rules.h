@@ -12,7 +12,7 @@ struct FairingRuleSetting {
   double unit = 1.0;   ///< Of energies, in the user's units.
   int dimension = 1;   ///< Coordinates that a row of the family stands for.
   int systems = 1;     ///< Coordinates that are unknowns of one system; 1: each has the same one.
-  double noise = 0.0;  ///< Of each coordinate, in the user's units; for discrepancy.
+  double noise = 0.0;  ///< Of each coordinate, in the user's units; for risk and discrepancy.
 };
 
 /// Scans the weights of `family` from the data's end to the fair end, then looks closer by the

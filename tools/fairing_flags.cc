@@ -7,13 +7,16 @@
 #include "tools/knot_file.h"
 #include "tools/run_flags.h"
 
-DEFINE_string(fairing, "",
-              "Chooses the weight of the fairing term (added where --terms has none): gcv, "
-              "generalised cross-validation; discrepancy, from the known --noise; lcurve, the "
-              "corner of the L-curve.");
-DEFINE_double(noise, 0.0,
-              "With --fairing=discrepancy: standard deviation of each coordinate of the points, in "
-              "the data's unit of length.");
+DEFINE_string(
+    fairing, "",
+    "Chooses the weight of the fairing term (added where --terms has none): gcv, "
+    "generalised cross-validation; risk, the least expected error by the known --noise; "
+    "discrepancy, residuals as large as the known --noise leaves them; lcurve, the corner "
+    "of the L-curve.");
+DEFINE_double(
+    noise, 0.0,
+    "With --fairing=risk and discrepancy: standard deviation of each coordinate of the points, in "
+    "the data's unit of length.");
 DEFINE_string(fairing_units, "scale_free",
               "Of terms that do not say it themselves: scale_free, the integral over a parameter "
               "from 0 to 1; source, over the parameter as it is.");
@@ -82,7 +85,7 @@ bool ApplySpanWeights(FitSpec* spec, std::string* error) {
 
 std::vector<FlagInfo> FairingFlags() {
   constexpr double kLargestNoise = 1e150;
-  return {WordFlag("fairing", {"gcv", "discrepancy", "lcurve"}),
+  return {WordFlag("fairing", {"gcv", "risk", "discrepancy", "lcurve"}),
           NumberAboveFlag("noise", "LENGTH", 0.0, kLargestNoise),
           WordFlag("fairing_units", {"scale_free", "source"}),
           TextFlag("span_weights", "NUMBERS", kAllowedSpanWeights),
@@ -90,11 +93,13 @@ std::vector<FlagInfo> FairingFlags() {
 }
 
 bool CheckFairingFlags(const FitSpec& spec, std::string* error) {
-  const bool needs_noise = FLAGS_fairing == "discrepancy";
+  FairingRule rule = FairingRule::kGcv;
+  const bool needs_noise = FromString(FLAGS_fairing, &rule) && NeedsNoise(rule);
   if (needs_noise != WasGiven("noise")) {
-    *error = needs_noise ? "--fairing: discrepancy needs --noise, the points' standard deviation"
-                         : RefusedFlag("noise", NumberText(FLAGS_noise),
-                                       "nothing, without --fairing=discrepancy");
+    *error = needs_noise
+                 ? "--fairing: " + FLAGS_fairing + " needs --noise, the points' standard deviation"
+                 : RefusedFlag("noise", NumberText(FLAGS_noise),
+                               "nothing, without --fairing=risk or --fairing=discrepancy");
     return false;
   }
   if (WasGiven("fairing_figure") && !WasGiven("fairing")) {

@@ -109,9 +109,9 @@ std::string FairnessText(const CurveFairness& fairness) {
 }
 
 std::string ChoiceLines(const FairingChoice& choice) {
-  const char* const score = choice.rule == FairingRule::kGcv      ? "V "
-                            : choice.rule == FairingRule::kLCurve ? "curvature of the L "
-                                                                  : "RSS over that of the noise ";
+  constexpr const char* kScoreNames[] = {"V ", "estimated risk over noise^2 ",
+                                         "RSS over what the noise leaves ", "curvature of the L "};
+  const char* const score = kScoreNames[static_cast<int>(choice.rule)];
   const std::string text = "weight " + Short(choice.weight) + " by " + ToString(choice.rule) +
                            ": " + score + Short(choice.chosen.score) + ", " +
                            Short(choice.chosen.trace) + " effective control points, noise " +

@@ -229,9 +229,12 @@ TEST(FitCommand, RefusesFairingThatItCannotChoose) {
                          const std::vector<std::string>& parts) {
     ExpectRefused(FitText(kSixPoints, flags), parts);
   };
-  refuse({"--fairing=best"}, {"--fairing: found \"best\"", "allowed: gcv, discrepancy, lcurve"});
+  refuse({"--fairing=best"},
+         {"--fairing: found \"best\"", "allowed: gcv, risk, discrepancy, lcurve"});
   refuse({"--fairing=discrepancy"}, {"--fairing: discrepancy needs --noise"});
+  refuse({"--fairing=risk"}, {"--fairing: risk needs --noise"});
   refuse({"--noise=0.1"}, {"--noise: found 0.1", "allowed: nothing, without"});
+  refuse({"--fairing=gcv", "--noise=0.1"}, {"--noise: found 0.1", "allowed: nothing, without"});
   refuse({"--fairing=gcv", "--terms=interpolation/loss=huber"},
          {"--fairing=gcv cannot judge a loss"});
   refuse({"--fairing=gcv", "--parameter_kind=free"}, {"--fairing=gcv cannot judge free"});

@@ -328,6 +328,25 @@ TEST(FitCommand, ChoosesTheFairingWeightAndDrawsHow) {
   EXPECT_THAT(ended.out, HasSubstr(" effective control points, noise "));
 }
 
+TEST(FitCommand, ChoosesTheFairingWeightByAKnownNoise) {
+  for (const std::string rule : {"risk", "discrepancy"}) {
+    const TemporaryFolder folder;
+    const Ended ended =
+        RunBatten({"fit", kRhino, "--closed", "--control_points=50", "--fairing=" + rule,
+                   "--noise=1", "--solver=banded_qr", "--out=" + (folder / "fit.json")});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const json choice = json::parse(ReadFile(folder / "fit.json"))["fairing_choice"];
+    EXPECT_EQ(choice["rule"], rule);
+    const double squared = choice["residual"].get<double>() / 200.0;
+    const double used = choice["effective_control_points"].get<double>() / 100.0;
+    const double score = rule == "risk" ? squared + 2.0 * used : squared / (1.0 - used);
+    EXPECT_NEAR(choice["score"].get<double>(), score, 1e-9 * score);
+    EXPECT_THAT(ended.out,
+                HasSubstr(" by " + rule +
+                          (rule == "risk" ? ": estimated risk over " : ": RSS over what ")));
+  }
+}
+
 TEST(FitCommand, WarnsOfAWeightAtAnEndOfTheScan) {
   // Points on either side of a line in turn: the fairest curve is the best one.
   std::string line = "t,x,y\n";
