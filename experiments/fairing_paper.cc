@@ -5,6 +5,7 @@
 
 #include "experiments/curve_fairness.h"
 #include "experiments/experiment_runs.h"
+#include "problems/data_folders.h"
 
 namespace batten {
 
@@ -23,9 +24,10 @@ Reproduction FairingPaper() {
       "P = beta (alpha W + beta M'M)^-1 M'F as a full matrix by column-pivoted QR (`dense_qr`). "
       "Here the same problem is the terms interpolation, end_tangent and fairing with "
       "units=source, solved in the band (`banded_qr`) unless the table says otherwise. Its data "
-      "are not public: ours are a circle of our own, and a GPS track, an airfoil and a coast from "
+      "are not public: ours are a circle of our own, and GPS tracks, an airfoil and coasts from "
       "`data/`. Curvature is read at several places of every span.";
-  reproduction.experiments = {FairingPaperCircle(), FairingPaperShapes(), FairingPaperMethod()};
+  reproduction.experiments = {FairingPaperCircle(), FairingPaperShapes(), FairingPaperMethod(),
+                              FairingPaperFormula()};
   return reproduction;
 }
 
@@ -52,6 +54,23 @@ std::shared_ptr<const Problem> SourceFit(const Points& points, double alpha, dou
     spec.terms.push_back({"fairing", {units, {"weight", NumberText(alpha)}}, nullptr});
   }
   return CheckedFit(std::move(data), std::move(spec));
+}
+
+bool ReadDistinctPoints(const char* file, int every, int most, Points* points, std::string* error) {
+  const std::string path = FindDataFile(file, "");
+  if (path.empty()) {
+    *error = std::string("data file ") + file + " is not found";
+    return false;
+  }
+  const std::optional<DataSet> data = ReadDataSet(path, error);
+  if (!data.has_value()) return false;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < data->points.rows(); i += every) {
+    const bool is_new = kept.empty() || data->points.row(i) != data->points.row(kept.back());
+    if (is_new && static_cast<int>(kept.size()) < most) kept.push_back(i);
+  }
+  *points = data->points(kept, Eigen::all);
+  return true;
 }
 
 std::vector<std::string> FairnessColumns() {

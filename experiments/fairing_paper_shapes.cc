@@ -3,7 +3,6 @@
 
 #include "experiments/experiment_runs.h"
 #include "experiments/fairing_paper.h"
-#include "problems/data_folders.h"
 
 namespace batten {
 namespace {
@@ -24,19 +23,7 @@ constexpr Shape kShapes[] = {{"track", "curves3d/gps_hike_xyz_open.csv", 4, 361,
 
 /// Points of a file that are different from the ones before them, scaled.
 bool ReadShape(const Shape& shape, Points* points, std::string* error) {
-  const std::string path = FindDataFile(shape.file, "");
-  if (path.empty()) {
-    *error = std::string("data file ") + shape.file + " is not found";
-    return false;
-  }
-  const std::optional<DataSet> data = ReadDataSet(path, error);
-  if (!data.has_value()) return false;
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < data->points.rows(); i += shape.every) {
-    const bool is_new = kept.empty() || data->points.row(i) != data->points.row(kept.back());
-    if (is_new && static_cast<int>(kept.size()) < shape.most) kept.push_back(i);
-  }
-  *points = data->points(kept, Eigen::all);
+  if (!ReadDistinctPoints(shape.file, shape.every, shape.most, points, error)) return false;
   const Eigen::RowVectorXd low = points->colwise().minCoeff();
   const double side = (points->colwise().maxCoeff() - low).maxCoeff();
   *points = (points->rowwise() - low) * (shape.size / side);

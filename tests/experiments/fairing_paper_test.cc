@@ -191,5 +191,74 @@ TEST(FairingPaper, ControlPointsAreTheSourcesFormula) {
   }
 }
 
+/// Knots a step apart from `begin` on, all simple: inside, rows of W are those of the cubic
+/// B-spline, whose second derivative is 0, 1, -2, 1, 0 at its knots.
+std::vector<double> KnotsFrom(double begin) {
+  std::vector<double> u;
+  for (int i = 0; i < 14; ++i) u.push_back(begin + i);
+  return u;
+}
+
+TEST(FairingPaper, WOfUniformKnotsIsKnown) {
+  const Eigen::RowVector4d known(8.0 / 3.0, -1.5, 0.0, 1.0 / 6.0);
+  const Eigen::MatrixXd formula = SourceFormulaOfW(KnotsFrom(0.0));
+  const Eigen::MatrixXd accurate = AccurateW(KnotsFrom(0.0));
+  ASSERT_EQ(accurate.rows(), 10);
+  EXPECT_LE((accurate.row(3) - known).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LE((formula.row(3) - known).cwiseAbs().maxCoeff(), 1e-12);
+  // Far out differences of cubes have lost what the values at the ends keep.
+  const Eigen::MatrixXd far = SourceFormulaOfW(KnotsFrom(1e5));
+  EXPECT_LE((AccurateW(KnotsFrom(1e5)).row(3) - known).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_GE((far.row(3) - known).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+/// Points of a spiral about one apart.
+Points Spiral(int num_points) {
+  Points points(num_points, 2);
+  for (int i = 0; i < num_points; ++i) {
+    const double angle = std::sqrt(2.0 * i + 9.0);
+    points.row(i) << angle * std::cos(angle), angle * std::sin(angle);
+  }
+  return points;
+}
+
+TEST(FairingPaper, TheSourcesFormulaAgreesOnShortDataAndLosesDigitsWithTheCubeOfTheParameter) {
+  const FormulaErrors few = MeasureSourceFormula(Spiral(10), true);
+  const FormulaErrors more = MeasureSourceFormula(Spiral(300), true);
+  const FormulaErrors many = MeasureSourceFormula(Spiral(10000), false);
+  EXPECT_NEAR(few.reach, 9.0, 1.0);
+  EXPECT_LE(few.w, 1e-12);
+  EXPECT_LE(few.source, 1e-11);
+  EXPECT_GE(more.source, 1e3 * few.source);
+  EXPECT_LE(more.dense_qr, 1e-10);
+  EXPECT_GE(more.source, 10.0 * more.dense_qr);
+  EXPECT_TRUE(std::isnan(many.source));
+  const double power = std::log10(many.w / more.w) / std::log10(many.reach / more.reach);
+  EXPECT_NEAR(power, 3.0, 0.5);
+}
+
+ExperimentTables FormulaTables(double few_w, double many_w, double many_source) {
+  CsvTable table({"data", "points", "reach", "w_error", "source_error", "dense_qr_error"});
+  table.AddRow({"coast", "10", "100", NumberText(few_w), NumberText(few_w), "1e-13"});
+  table.AddRow({"coast", "1000", "1000", NumberText(many_w), NumberText(many_source), "1e-13"});
+  table.AddRow({"coast", "10000", "10000", NumberText(many_w), "", ""});
+  return {{"", table}};
+}
+
+TEST(FairingPaper, JudgesTheFormula) {
+  const Experiment formula = FairingPaperFormula();
+  EXPECT_EQ(VerdictOn(formula, FormulaTables(1e-12, 1e-11, 1e-11)), kHolds);
+  EXPECT_EQ(VerdictOn(formula, FormulaTables(1e-12, 1e-7, 1e-11)), kInPart);
+  EXPECT_EQ(VerdictOn(formula, FormulaTables(1e-12, 1e-11, 1e-9)), kInPart);
+  EXPECT_EQ(VerdictOn(formula, FormulaTables(1e-9, 1e-7, 1e-7)), kDoesNotHold);
+  EXPECT_THAT(formula.claims[0].judge(FormulaTables(1e-12, 1e-9, 1e-8)).because,
+              ::testing::AllOf(::testing::HasSubstr("its W has 12 digits"),
+                               ::testing::HasSubstr("the control points have 8, "),
+                               ::testing::HasSubstr("with the power 1.5 of")));
+  EXPECT_EQ(VerdictOn(formula, {{"", CsvTable({"data", "points", "reach", "w_error", "source_error",
+                                               "dense_qr_error"})}}),
+            kUndecided);
+}
+
 }  // namespace
 }  // namespace batten
