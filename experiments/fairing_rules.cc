@@ -7,6 +7,7 @@
 
 #include "cost_functions/options.h"
 #include "splines/brent_minimum.h"
+#include "splines/illinois_root.h"
 
 namespace batten {
 namespace {
@@ -202,28 +203,16 @@ class Chooser {
     return false;
   }
 
-  /// The weight between two samples at which the score is 1, by secants (Illinois) in logarithms.
-  double Crossing(FairingSample left, FairingSample right) {
+  /// The weight between two samples at which the score is 1.
+  double Crossing(const FairingSample& left, const FairingSample& right) {
     const auto log_score = [](double score) {
       return std::log10(std::clamp(score, 1e-300, 1e300));
     };
-    double a = std::log10(left.weight), b = std::log10(right.weight);
-    double fa = log_score(left.score), fb = log_score(right.score);
     constexpr double kTolerance = 1e-8;
     constexpr int kMostCalls = 40;
-    for (int call = 0; call < kMostCalls; ++call) {
-      const double place = (a * fb - b * fa) / (fb - fa);
-      const double value = log_score(Evaluate(place));
-      if (std::abs(value) < kTolerance) break;
-      if (value * fb < 0.0) {
-        a = b;
-        fa = fb;
-      } else {
-        fa *= 0.5;  // the end that stays counts half, so that it does move
-      }
-      b = place;
-      fb = value;
-    }
+    IllinoisRoot([&](double place) { return log_score(Evaluate(place)); }, std::log10(left.weight),
+                 log_score(left.score), std::log10(right.weight), log_score(right.score),
+                 kTolerance, kMostCalls);
     return samples_.back().weight;
   }
 

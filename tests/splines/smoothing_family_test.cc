@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "splines/brent_minimum.h"
+#include "splines/illinois_root.h"
 #include "splines/inverse_band.h"
 #include "splines/scaled_rows.h"
 #include "tests/splines/row_testing.h"
@@ -125,6 +126,20 @@ TEST(BrentMinimum, FindsAnOffCentreMinimumInFewCalls) {
   EXPECT_NEAR(place, std::log(2.0), 3e-6);
   EXPECT_NEAR(value, 2.0 - 2.0 * std::log(2.0), 1e-11);
   EXPECT_LE(calls, 20);
+}
+
+TEST(IllinoisRoot, FindsARootThatPlainSecantsWouldCreepTo) {
+  int calls = 0;
+  const auto f = [&calls](double x) {
+    ++calls;
+    return std::pow(x, 9) - 2.0;
+  };
+  const double root = std::pow(2.0, 1.0 / 9.0);
+  EXPECT_NEAR(IllinoisRoot(f, 0.0, -2.0, 3.0, f(3.0), 1e-10, 60), root, 1e-10);
+  EXPECT_LE(calls, 40);
+  calls = 0;
+  IllinoisRoot(f, 0.0, -2.0, 3.0, f(3.0), 1e-10, 5);
+  EXPECT_EQ(calls, 6);
 }
 
 }  // namespace
