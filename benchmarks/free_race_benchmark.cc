@@ -21,9 +21,11 @@
 
 #include "benchmarks/free_race_table.h"
 #include "experiments/csv_table.h"
+#include "experiments/fit_report.h"
 #include "experiments/start_comparison.h"
 #include "problems/data_folders.h"
 #include "problems/objective.h"
+#include "splines/closest_point.h"
 
 namespace batten {
 namespace {
@@ -185,15 +187,30 @@ std::unique_ptr<Problem> DisturbedCircle(const Problem& problem, int k) {
   return from;
 }
 
-/// Control points of the lowest minimum that is found from a number of disturbed circles.
+/// Loops of a curve that no data point is near.
+int NumFreeLoops(const CurveFit& fit, const Points& control_points) {
+  const BsplineCurve curve(fit.basis(), control_points);
+  Eigen::VectorXd feet = fit.parameters();
+  ClosestPoint(curve).FindAll(fit.data().points, 1, &feet, nullptr);
+  return ShapeBesideData(fit, curve, feet)->num_free_loops;
+}
+
+/// Control points of the lowest minimum that is found from a number of disturbed circles, of those
+/// without loops if there are any: around a loop that no data hold a disturbance leads anywhere.
 Points BestMinimum(const Problem& problem) {
   constexpr int kTries = 20;
   BasinEnd best;
+  bool best_has_loops = true;
   for (int k = 0; k < kTries; ++k) {
     const Arrival arrival = RunOnce(*DisturbedCircle(problem, k), "foot_newton", 1.0);
-    const bool is_better = best.control_points.size() == 0 ||
-                           arrival.basin.energy_at_foot_points < best.energy_at_foot_points;
-    if (arrival.basin.polished && is_better) best = arrival.basin;
+    if (!arrival.basin.polished) continue;
+    const Points& found = arrival.basin.control_points;
+    const bool has_loops = NumFreeLoops(*problem.curve_fit(), found) > 0;
+    const bool is_lower = arrival.basin.energy_at_foot_points < best.energy_at_foot_points;
+    const bool is_first = best.control_points.size() == 0;
+    if (!is_first && (has_loops != best_has_loops ? has_loops : !is_lower)) continue;
+    best = arrival.basin;
+    best_has_loops = has_loops;
   }
   if (best.control_points.size() == 0) Fail(problem.name() + ": no minimum was found");
   return best.control_points;

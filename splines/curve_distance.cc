@@ -117,9 +117,10 @@ template <int P, int D>
 CurveDistance Stretch<P, D>::FindFoot(double low, double start, double high) const {
   // Bisection alone needs 53 steps from any bracket to neighbouring doubles.
   constexpr int kMaxSteps = 100;
-  // The circle's step is for far ones: near the foot Newton's is as good and costs a third. After
-  // one so short that the next would be below rounding, none follows.
-  constexpr double kShort = 1.0;
+  // Short steps are Newton's, which cost a third of the circle's; a long one may pass a farther
+  // place, and feet as near would take turns. After a step so short that the next would be below
+  // rounding, none follows.
+  constexpr double kShort = 0.1;
   constexpr double kLast = 1e-9;
   const double tolerance = 2.0 * kUnitRoundoff * std::max(std::abs(low), std::abs(high));
   const double begin = low;

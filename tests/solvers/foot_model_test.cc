@@ -382,8 +382,10 @@ TEST_P(FootModels, StepsWithinLinearConstraintsAsTheKktConditionsSay) {
   Eigen::VectorXd step;
   model.Solve(&step);
   ASSERT_EQ(step.size(), n);
-  EXPECT_LT((step - expected).norm(), kEpsilon * static_cast<double>(n) * hessian.norm() *
-                                          hessian.inverse().norm() * expected.norm());
+  // Both solve the whole system, whose condition counts: two constraints are nearly parallel.
+  const double condition = kkt.norm() * kkt.inverse().norm();
+  EXPECT_LT((step - expected).norm(),
+            kEpsilon * static_cast<double>(n + 3) * condition * expected.norm());
   EXPECT_LT((c * step).norm(), 1e-12);
 }
 
