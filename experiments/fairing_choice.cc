@@ -6,6 +6,7 @@
 #include "experiments/audited_terms.h"
 #include "experiments/fairing_rules.h"
 #include "problems/curve_view.h"
+#include "problems/fit_guard.h"
 #include "splines/smoothing_family.h"
 
 namespace batten {
@@ -44,7 +45,7 @@ bool FindFairingTerm(FairingRule rule, FitSpec* spec, std::size_t* index, std::s
              " parameters, which are no linear fit; give a weight";
     return false;
   }
-  if (spec->guard.has_value()) {
+  if (HasGuard(spec->guard)) {
     *error = name + " chooses the weight of the only fairing term, and the guard " +
              spec->guard->ToString() + " is another; leave the guard out or give a weight";
     return false;

@@ -7,6 +7,8 @@
 namespace batten {
 namespace {
 
+constexpr const char* kNone = "none";
+
 struct Guard {
   const char* name;
   int derivative;
@@ -21,31 +23,41 @@ constexpr Guard kGuards[] = {
     {"bending", 2, 1e-8, "per data point, of the integral of |C''|^2"},
 };
 
+NameSpec FairingTerm(int derivative, double weight) {
+  return {"fairing",
+          {{"derivative", std::to_string(derivative)}, {"weight", NumberText(weight)}},
+          nullptr};
+}
+
 }  // namespace
 
 bool ApplyGuard(const NameSpec& guard, int num_points, std::vector<NameSpec>* terms,
                 std::string* error) {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {kNone};
+  if (guard.wrapped != nullptr) {
+    *error = "guard " + guard.name + " wraps nothing; found :" + guard.wrapped->ToString();
+    return false;
+  }
+  OptionValues options;
+  if (guard.name == kNone) return ResolveOptions({}, guard, &options, error);
   for (const Guard& known : kGuards) {
     names.emplace_back(known.name);
     if (guard.name != known.name) continue;
-    if (guard.wrapped != nullptr) {
-      *error = "guard " + guard.name + " wraps nothing; found :" + guard.wrapped->ToString();
-      return false;
-    }
-    OptionValues options;
     if (!ResolveOptions({OptionInfo::Real("weight", known.weight, 0.0, 1e12, known.help)}, guard,
                         &options, error)) {
       return false;
     }
-    terms->push_back({"fairing",
-                      {{"derivative", std::to_string(known.derivative)},
-                       {"weight", NumberText(options.Real("weight") * num_points)}},
-                      nullptr});
+    terms->push_back(FairingTerm(known.derivative, options.Real("weight") * num_points));
     return true;
   }
   *error = UnknownNameMessage("guard", guard.name, names);
   return false;
 }
+
+bool HasGuard(const std::optional<NameSpec>& guard) {
+  return guard.has_value() && guard->name != kNone;
+}
+
+NameSpec LengthGuard(double weight) { return FairingTerm(1, weight); }
 
 }  // namespace batten

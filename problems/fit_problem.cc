@@ -249,7 +249,8 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   if (fit->spec_.terms.empty()) {
     fit->spec_.terms.push_back({DistanceTermOf(fit->spec_.parameter_kind), {}, nullptr});
   }
-  if (fit->spec_.guard.has_value()) {
+  const bool guard_is_said = fit->spec_.guard.has_value();
+  if (guard_is_said) {
     const auto m = static_cast<int>(fit->data_.points.rows());
     if (!ApplyGuard(*fit->spec_.guard, m, &fit->spec_.terms, error)) return nullptr;
     fit->spec_.guard.reset();
@@ -280,7 +281,8 @@ std::unique_ptr<Problem> MakeFitProblem(DataSet data, FitSpec spec, std::string*
   }
   if (AsksForRobustStart(fit->spec_.terms)) {
     std::optional<Eigen::VectorXd> robust;
-    if (!StartRobustly(*problem, constraints, fit->setting_, &fit->spec_.terms, &robust, error)) {
+    if (!StartRobustly(*problem, constraints, fit->setting_, !guard_is_said, &fit->spec_.terms,
+                       &robust, error)) {
       return nullptr;
     }
     const bool is_asked_for = fit->spec_.start != "data" || fit->spec_.start_points.size() > 0;

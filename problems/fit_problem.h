@@ -59,7 +59,7 @@ struct FitSpec {
   /// Free parameters: they stay in the order of the data points, on closed curves within a period.
   bool keep_order = false;
   /// Against loops: a name and options as in fit_guard.h. A problem made of it has the term
-  /// instead.
+  /// instead. Nothing: none, but for fits as in robust_start.h, whose guard is estimated.
   std::optional<NameSpec> guard;
   std::vector<NameSpec> constraints;  // hard ones, of problems/curve_constraints.h
   /// Factors of fairing terms, one per non-empty span, finite and >= 0; empty: all 1.

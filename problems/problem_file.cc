@@ -171,7 +171,7 @@ bool ReadSpanWeights(const StrictObject& file, FitSpec* spec) {
   const bool has_fairing = std::any_of(
       spec->terms.begin(), spec->terms.end(),
       [](const NameSpec& term) { return term.name == "fairing" || term.name == "curve_fairing"; });
-  if (!has_fairing && !spec->guard.has_value()) {
+  if (!has_fairing && !HasGuard(spec->guard)) {
     return file.Refuse("span_weights",
                        "nothing, where there is neither a fairing term nor a guard");
   }

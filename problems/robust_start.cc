@@ -7,6 +7,7 @@
 #include "cost_functions/foot_feet.h"
 #include "cost_functions/term.h"
 #include "problems/curve_view.h"
+#include "problems/fit_guard.h"
 #include "splines/nearest_solution.h"
 #include "splines/scaled_rows.h"
 
@@ -51,6 +52,7 @@ NameSpec WithoutLoss(NameSpec spec) {
 struct HuberTerm {
   std::unique_ptr<BlockFamily> family;  // without loss
   int coordinates = 0;                  // in which residuals are errors
+  bool moves = false;                   // parameters are not fixed
   std::string loss;                     // empty: none
   bool estimated = false;               // the scale
   double scale = 0.0;                   // of Huber's loss, in the units of residuals
@@ -82,6 +84,7 @@ class HuberFit {
       at_feet.name = "interpolation";
       if (!AddTerm(at_feet, error)) return false;
       // In one dimension every point lies on the curve, and the residuals are zero.
+      terms_.back().moves = true;
       terms_.back().coordinates = std::max(setting_.dimension - 1, 1);
       return true;
     }
@@ -158,9 +161,15 @@ class HuberFit {
   std::vector<HuberTerm> terms_;
 };
 
+bool IsFair(const std::vector<NameSpec>& terms) {
+  return std::any_of(terms.begin(), terms.end(),
+                     [](const NameSpec& spec) { return spec.name == "fairing"; });
+}
+
 bool Freeze(const HuberFit& fit, const Eigen::VectorXd& x, const FitSetting& setting,
-            std::vector<NameSpec>* terms, std::string* error) {
+            bool may_guard, std::vector<NameSpec>* terms, std::string* error) {
   constexpr double kLeast = 1e-6;  // least that loss_scale may be
+  double guard = 0.0;
   for (std::size_t i = 0; i < terms->size(); ++i) {
     const HuberTerm& term = fit.terms()[i];
     if (!term.estimated) continue;
@@ -175,7 +184,9 @@ bool Freeze(const HuberFit& fit, const Eigen::VectorXd& x, const FitSetting& set
     for (auto& [option, value] : (*terms)[i].options) {
       if (option == kScaleOption) value = NumberText(scale);
     }
+    if (term.moves) guard += term.family->weight() * setting.data->size * sigma * sigma;
   }
+  if (may_guard && guard > 0.0 && !IsFair(*terms)) terms->push_back(LengthGuard(guard));
   return true;
 }
 
@@ -265,7 +276,7 @@ bool AsksForRobustStart(const std::vector<NameSpec>& terms) {
 }
 
 bool StartRobustly(const Problem& problem, const std::vector<LinearConstraint>& constraints,
-                   const FitSetting& setting, std::vector<NameSpec>* terms,
+                   const FitSetting& setting, bool may_guard, std::vector<NameSpec>* terms,
                    std::optional<Eigen::VectorXd>* start, std::string* error) {
   const auto is_estimated = [](const NameSpec& spec) {
     return OptionText(spec, kScaleOption) == kEstimated;
@@ -288,7 +299,7 @@ bool StartRobustly(const Problem& problem, const std::vector<LinearConstraint>& 
     const bool is_last = made && moves && (settled || round == kMostRounds);
     if (is_last) {
       *start = sites.WithParameters(x);
-      return Freeze(fit, x, setting, terms, error);
+      return Freeze(fit, x, setting, may_guard, terms, error);
     }
     const Eigen::VectorXd before = x;
     if (!made || !fit.Solve(round == 0, &x)) {
@@ -301,7 +312,7 @@ bool StartRobustly(const Problem& problem, const std::vector<LinearConstraint>& 
     }
     if (!moves) {
       *start = x;
-      return Freeze(fit, x, setting, terms, error);
+      return Freeze(fit, x, setting, may_guard, terms, error);
     }
     settled = round > 0 && (x - before).cwiseAbs().maxCoeff() <= kSettled * setting.size;
     sites.MoveToFeet(x);

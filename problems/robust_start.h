@@ -23,13 +23,17 @@ bool AsksForRobustStart(const std::vector<NameSpec>& terms);
 /// - *start, the variables that a loss that is not convex starts from, is Huber's answer; nothing
 ///   where no loss needs it, or some term is no compiled row.
 /// Where parameters are free or projected the points look for their feet after each fit; residuals
-/// there are across the curve, one coordinate less.
+/// there are across the curve, one coordinate less. If `may_guard` and there is no fairing term,
+/// such a fit with loss_scale=mad also gets the guard `length`, of weight sigma^2 (in units of the
+/// data's squared size) per data point: a stretch of curve that runs out to a wild point costs more
+/// than the loss gains by it, which without a guard costs nothing, since no other point is nearest
+/// to it. It goes to zero with the noise, as M-type smoothing has it (Cox, Ann. Statist. 11, 1983).
 /// `constraints`: the problem's linear ones, those of parameters among them, which hold ends.
 /// False with one sentence in `error` where a scale cannot be estimated: terms that are no compiled
 /// rows, or residuals that are zero.
 /// Huber & Ronchetti, Robust Statistics, sec. 5.1 and 7.8; Holland & Welsch 1977 for the constants.
 bool StartRobustly(const Problem& problem, const std::vector<LinearConstraint>& constraints,
-                   const FitSetting& setting, std::vector<NameSpec>* terms,
+                   const FitSetting& setting, bool may_guard, std::vector<NameSpec>* terms,
                    std::optional<Eigen::VectorXd>* start, std::string* error);
 
 }  // namespace batten

@@ -53,7 +53,9 @@ DEFINE_bool(keep_order, kDefaults.keep_order,
             "Free parameters: they stay in the order of the data points.");
 DEFINE_string(guard, "none",
               "Against loops where no point is nearest to the curve: length or bending, a light "
-              "fairing term that every solver honours; /weight=W per data point.");
+              "fairing term that every solver honours; /weight=W per data point. Not given, fits "
+              "of free or projected parameters with loss_scale=mad have length, of a weight that "
+              "goes with the noise.");
 DEFINE_bool(hold_ends, kDefaults.hold_ends,
             "Free parameters of an open curve: the first and the last one stay at the ends.");
 DEFINE_string(constraints, "",
@@ -144,8 +146,6 @@ bool ApplyTerms(FitSpec* spec, std::string* error) {
 
 bool ApplyGuardFlag(FitSpec* spec, std::string* error) {
   if (!WasGiven("guard")) return true;
-  spec->guard.reset();
-  if (FLAGS_guard == "none") return true;
   NameSpec guard;
   std::vector<NameSpec> terms;
   if (!ParseNameSpec(FLAGS_guard, &guard, error) || !ApplyGuard(guard, 1, &terms, error)) {

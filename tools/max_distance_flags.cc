@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "problems/fit_guard.h"
+
 DEFINE_double(max_distance, 0.0,
               "Instead of --control_points and a solver: searches for few control points such that "
               "no data point is farther from the curve, in the data's unit of length "
@@ -46,7 +48,7 @@ bool CheckMaxDistanceFlags(const std::vector<FlagInfo>& flags, const FitSpec& sp
   const bool is_plain = std::all_of(spec.terms.begin(), spec.terms.end(), [](const NameSpec& term) {
     return term.name == "interpolation" && term.options.empty();
   });
-  if (!is_plain || !spec.constraints.empty() || spec.guard.has_value() ||
+  if (!is_plain || !spec.constraints.empty() || HasGuard(spec.guard) ||
       spec.parameter_kind != ParameterKind::kFixed) {
     *error =
         "--max_distance: the named problem has terms, constraints or free parameters; allowed: "

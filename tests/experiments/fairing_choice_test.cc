@@ -329,7 +329,7 @@ TEST(FairingChoice, RefusesWhatItCannotJudge) {
   EXPECT_EQ(why_not("interpolation", ParameterKind::kFixed),
             "fairing=gcv chooses the weight of the only fairing term, and the guard bending is "
             "another; leave the guard out or give a weight");
-  curve.spec.guard.reset();
+  curve.spec.guard = NameSpec{"none", {}, nullptr};  // is no guard
   ASSERT_TRUE(curve.spec.constraints.empty());
   curve.spec.constraints = {Named("curvature/t=0.5/kappa=1")};
   EXPECT_EQ(why_not("interpolation", ParameterKind::kFixed),

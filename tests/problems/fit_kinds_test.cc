@@ -95,6 +95,11 @@ TEST(Guard, IsALightFairingTermOfTheProblem) {
   }
 }
 
+TEST(Guard, OfNoneAddsNothing) {
+  EXPECT_EQ(MakeFit(MakeNoisyBean(30, 2, 804), WithGuard("none"))->terms().size(), 1U);
+  EXPECT_THAT(WhyNot(WithGuard("none/weight=1")), HasSubstr("weight"));
+}
+
 TEST(Guard, IsRefusedWhereItIsNotKnown) {
   EXPECT_THAT(WhyNot(WithGuard("lenght")), HasSubstr("length"));
   EXPECT_THAT(WhyNot(WithGuard("length/weight=-1")), HasSubstr("weight"));

@@ -101,6 +101,37 @@ TEST(RobustStart, FreezesTheEstimatedScaleOfMovingParametersNearTheNoise) {
   }
 }
 
+std::vector<NameSpec> GuardedTerms(const std::string& term, ParameterKind kind,
+                                   const std::optional<NameSpec>& guard = std::nullopt) {
+  FitSpec spec = MakeSpec(3, true, 20, term);
+  spec.parameter_kind = kind;
+  spec.guard = guard;
+  return MakeFit(ThrownPoints(14, true).data, spec)->curve_fit()->spec().terms;
+}
+
+TEST(RobustStart, GuardsMovingParametersByTheVarianceOfTheNoise) {
+  for (const ParameterKind kind : {ParameterKind::kFree, ParameterKind::kProjected}) {
+    const std::string name = DistanceTermOf(kind);
+    const auto terms = GuardedTerms(name + "/weight=3/loss=huber/loss_scale=mad", kind);
+    ASSERT_EQ(terms.size(), 2U);
+    double scale = 0.0, weight = 0.0;
+    ASSERT_TRUE(ParseNumber(terms[0].options.back().second, &scale));
+    ASSERT_TRUE(ParseNumber(terms[1].options.back().second, &weight));
+    EXPECT_THAT(terms[1].ToString(), HasSubstr("fairing/derivative=1/weight="));
+    const double sigma = scale / 1.345;
+    EXPECT_NEAR(weight, 3 * 200 * sigma * sigma, 1e-9 * weight);
+    // A guard or fairing that is asked for, none too, stays what it is.
+    const std::string estimated = name + "/loss=cauchy/loss_scale=mad";
+    EXPECT_EQ(GuardedTerms(estimated, kind, NameSpec{"none", {}, nullptr}).size(), 1U);
+    EXPECT_THAT(GuardedTerms(estimated, kind, NameSpec{"bending", {}, nullptr}).at(1).ToString(),
+                HasSubstr("derivative=2"));
+    EXPECT_EQ(GuardedTerms(estimated + ",fairing/weight=1e-9", kind).size(), 2U);
+    EXPECT_EQ(GuardedTerms(name + "/loss=cauchy/loss_scale=0.01", kind).size(), 1U);
+  }
+  EXPECT_EQ(GuardedTerms("interpolation/loss=cauchy/loss_scale=mad", ParameterKind::kFixed).size(),
+            1U);
+}
+
 TEST(RobustStart, OfMovingParametersLiesAtFeetNearTheTruth) {
   const ThrownPoints thrown(16, true);
   const auto problem = thrown.Fit("free_parameter/loss=tukey/loss_scale=mad", ParameterKind::kFree);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "tests/solvers/contract_cases.h"
 #include "tests/solvers/thrown_points.h"
@@ -114,26 +115,40 @@ TEST_P(RobustFreeFits, OfNewtonEndQuadratically) {
   }
 }
 
+/// Ends that a user gets. Methods that settle linearly have fewer iterations, as each looks for all
+/// feet: benchmarks/robust_fits.py has more of them.
+Eigen::VectorXd EndOf(const Problem& problem, const std::string& solver) {
+  const std::set<std::string> linear = {"pdm", "tdm", "sdm", "gi", "anderson:pdm"};
+  return SolverTrial(problem, solver, {linear.count(solver) > 0 ? 50 : 1000, 1e-3, true}).all;
+}
+
+std::vector<std::string> SolversOfThrownPoints(bool is_free) {
+  std::vector<std::string> solvers = {"newton", "lm_schur",    "anderson:pdm",
+                                      "lbfgs",  "ceres_lbfgs", "ceres_lm"};
+  // Of these the first four do the same with projected parameters.
+  const std::vector<std::string> of_free = {
+      "pdm", "tdm", "sdm", "gi", "foot_newton", "varpro", "best_of:foot_newton"};
+  if (is_free) solvers.insert(solvers.end(), of_free.begin(), of_free.end());
+  return solvers;
+}
+
 TEST_P(RobustFreeFits, AreHardlyWorseThanCleanOnesWhenATenthOfThePointsIsThrownAway) {
-  constexpr int kIterations = 20;
-  // Searches for all feet take their time: of projected ones one loss.
-  const std::vector<std::string> losses =
-      GetParam() ? std::vector<std::string>{"cauchy", "tukey"} : std::vector<std::string>{"tukey"};
   std::map<std::string, std::vector<double>> ratios;
   for (unsigned seed = 100; seed < 150; ++seed) {
     const ThrownPoints clean(seed, false), thrown(seed, true);
-    const auto plain = clean.Fit(GetParam() ? "free_parameter" : "foot_point", KindOf(GetParam()));
-    std::map<std::string, double> references;
-    for (const char* solver : kSolvers) {
-      if (!WhyUnsupported(*plain, solver).empty()) continue;
-      const SolverTrial trial(*plain, solver, {kIterations, 1e-6, true});
-      references[solver] = clean.ErrorAtFeet(*plain, trial.all);
-    }
-    for (const std::string& loss : losses) {
-      const auto robust = thrown.Fit(RobustTerm(GetParam(), loss, "mad"), KindOf(GetParam()));
-      for (const auto& [solver, reference] : references) {
-        const SolverTrial trial(*robust, solver, {kIterations, 1e-6, true});
-        ratios[solver + " " + loss].push_back(thrown.ErrorAtFeet(*robust, trial.all) / reference);
+    const auto fit = [&](const char* loss) {
+      return thrown.Fit(RobustTerm(GetParam(), loss, "mad"), KindOf(GetParam()));
+    };
+    const auto cauchy = fit("cauchy"), tukey = fit("tukey");
+    // Under the same guard, which goes with the estimated noise.
+    const std::string guard = cauchy->curve_fit()->spec().terms.back().ToString();
+    const auto plain =
+        clean.Fit((GetParam() ? "free_parameter," : "foot_point,") + guard, KindOf(GetParam()));
+    for (const std::string& solver : SolversOfThrownPoints(GetParam())) {
+      const double reference = clean.ErrorAtFeet(*plain, EndOf(*plain, solver));
+      for (const Problem* robust : {cauchy.get(), tukey.get()}) {
+        ratios[solver + (robust == tukey.get() ? " tukey" : " cauchy")].push_back(
+            thrown.ErrorAtFeet(*robust, EndOf(*robust, solver)) / reference);
       }
     }
   }
@@ -142,24 +157,6 @@ TEST_P(RobustFreeFits, AreHardlyWorseThanCleanOnesWhenATenthOfThePointsIsThrownA
     RecordProperty("worst " + name,
                    NumberText(*std::max_element(of_seeds.begin(), of_seeds.end())));
   }
-}
-
-// At ten times the disturbance the median is 1.18: lower minima far from Huber's answer.
-TEST(RobustFreeFits, OfBestOfStayNearTheRobustStart) {
-  constexpr const char* kSolver = "best_of:foot_newton";
-  constexpr int kIterations = 1000;
-  std::vector<double> ratios;
-  for (unsigned seed = 100; seed < 150; ++seed) {
-    const ThrownPoints clean(seed, false), thrown(seed, true);
-    const auto plain = clean.Fit("free_parameter", KindOf(true));
-    const SolverTrial reference(*plain, kSolver, {kIterations, 1e-6, true});
-    const auto robust = thrown.Fit(RobustTerm(true, "tukey", "mad"), KindOf(true));
-    const SolverTrial trial(*robust, kSolver, {kIterations, 1e-6, true});
-    ratios.push_back(thrown.ErrorAtFeet(*robust, trial.all) /
-                     clean.ErrorAtFeet(*plain, reference.all));
-  }
-  EXPECT_LE(Median(ratios), 1.15);
-  RecordProperty("worst", NumberText(*std::max_element(ratios.begin(), ratios.end())));
 }
 
 TEST(RobustFreeFits, TakeLossesOnOtherTermsToo) {

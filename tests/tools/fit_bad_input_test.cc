@@ -239,6 +239,7 @@ TEST(FitCommand, RefusesFairingThatItCannotChoose) {
          {"--fairing=gcv cannot judge a loss"});
   refuse({"--fairing=gcv", "--parameter_kind=free"}, {"--fairing=gcv cannot judge free"});
   refuse({"--fairing=gcv", "--parameter_kind=projected"}, {"--fairing=gcv cannot judge projected"});
+  refuse({"--guard=none/weight=1"}, {"--guard: ", "weight"});
   refuse({"--fairing=gcv", "--guard=bending"}, {"--fairing=gcv", "the guard bending is another"});
   refuse({"--fairing=gcv", "--terms=interpolation,curve_fairing"},
          {"--fairing=gcv cannot judge the term curve_fairing"});

@@ -176,6 +176,17 @@ TEST(FitCommand, TakesFreeParametersAndTheirStarts) {
   EXPECT_EQ(RunBatten({"fit", kRhino, "--control_points=12", "--hold_ends"}).status, 2);
 }
 
+TEST(FitCommand, GuardsEstimatedRobustFitsUnlessToldNotTo) {
+  const auto terms = [](const char* guard) {
+    return FitJson({kRhino, "--closed", "--control_points=12", "--parameter_kind=free",
+                    "--terms=free_parameter/loss=tukey/loss_scale=mad", "--solver=foot_newton",
+                    guard})["terms"];
+  };
+  EXPECT_EQ(terms("--guard=none").size(), 1U);
+  EXPECT_THAT(terms("--guard=bending").at(1)["name"], HasSubstr("fairing/derivative=2"));
+  EXPECT_THAT(terms("--quiet").at(1)["name"], HasSubstr("fairing/derivative=1"));
+}
+
 TEST(FitCommand, ReadsPointsFromStandardInput) {
   const json fit = FitJson({"-", "--closed", "--control_points=80"}, ReadFile(kRhino));
   EXPECT_NEAR(fit["energy"].get<double>(), kRhinoEnergy, kEnergyTolerance);
