@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "problems/fit_guard.h"
 #include "tools/knot_file.h"
 #include "tools/run_flags.h"
 
@@ -67,7 +68,7 @@ bool CheckFairingTerms(const FitSpec& spec, std::string* error) {
   const bool has_fairing = std::any_of(
       spec.terms.begin(), spec.terms.end(),
       [](const NameSpec& term) { return term.name == "fairing" || term.name == "curve_fairing"; });
-  if (WasGiven("span_weights") && !adds_fairing && !has_fairing && !spec.guard.has_value()) {
+  if (WasGiven("span_weights") && !adds_fairing && !has_fairing && !HasGuard(spec.guard)) {
     *error = RefusedFlag("span_weights", FLAGS_span_weights,
                          "nothing, without --fairing, a fairing term or a guard");
     return false;
