@@ -5,103 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "splines/basis_functions.h"
 #include "splines/gauss_legendre.h"
 
 namespace batten {
 namespace {
-
-constexpr int kMostDerivatives = 2;
-
-/// C, C', C'' and by how much the lengths of these may be off.
-struct SpanValues {
-  double c[kMostDerivatives + 1][kMaxDimension] = {};
-  double error[kMostDerivatives + 1] = {};
-};
-
-/// Reads curvature and how much of it may be rounding. A basis function has some 2 p roundings, the
-/// product and the sum p + 1: fewer than 4 (p + 1), of the largest control point, for each
-/// coordinate; the solution that control points come from is granted as many.
-class CurvatureReader {
- public:
-  explicit CurvatureReader(const BsplineCurve& curve)
-      : curve_(curve),
-        rounding_(8.0 * curve.basis().order() * std::numeric_limits<double>::epsilon() *
-                  std::sqrt(curve.dimension()) * curve.control_points().cwiseAbs().maxCoeff()) {}
-
-  /// By the polynomials of one span, also at its right end.
-  CurvatureSample Read(int span, double t, double* speed) const;
-
- private:
-  SpanValues Evaluate(int span, double t) const;
-
-  const BsplineCurve& curve_;
-  double rounding_;
-};
-
-SpanValues CurvatureReader::Evaluate(int span, double t) const {
-  const BsplineBasis& basis = curve_.basis();
-  double functions[(kMostDerivatives + 1) * kMaxOrder];
-  EvaluateBasisDerivatives(basis.degree(), basis.knots().data(), span, t, kMostDerivatives,
-                           functions);
-  const Points& points = curve_.control_points();
-  const int origin = basis.ControlPointIndex(span - basis.degree());
-  SpanValues values;
-  for (int k = 0; k <= kMostDerivatives; ++k) {
-    for (int j = 0; j <= basis.degree(); ++j) {
-      const double function = functions[k * basis.order() + j];
-      const int point = basis.ControlPointIndex(span - basis.degree() + j);
-      // From a control point near by, so that only the rounding of these is left far from 0.
-      for (int c = 0; c < curve_.dimension(); ++c) {
-        values.c[k][c] += function * (points(point, c) - points(origin, c));
-      }
-      values.error[k] += rounding_ * std::abs(function);
-    }
-  }
-  for (int c = 0; c < curve_.dimension(); ++c) values.c[0][c] += points(origin, c);
-  return values;
-}
-
-CurvatureSample CurvatureReader::Read(int span, double t, double* speed) const {
-  const SpanValues values = Evaluate(span, t);
-  const int d = curve_.dimension();
-  CurvatureSample sample;
-  sample.t = t;
-  std::copy_n(values.c[0], d, sample.point);
-  *speed = std::hypot(std::hypot(values.c[1][0], values.c[1][1]),
-                      std::hypot(values.c[1][2], values.c[1][3]));
-  const double first = values.error[1] / *speed;
-  if (!(first < 1.0)) {
-    sample.kappa = std::numeric_limits<double>::quiet_NaN();
-    sample.noise = std::numeric_limits<double>::infinity();
-    return sample;
-  }
-  // Over |C'|, so that products of very small lengths do not vanish.
-  double tangent[kMaxDimension], second[kMaxDimension];
-  double along = 0.0, length = 0.0, bend = 0.0;
-  for (int k = 0; k < d; ++k) {
-    tangent[k] = values.c[1][k] / *speed;
-    second[k] = values.c[2][k] / *speed;
-    along += tangent[k] * second[k];
-    length = std::hypot(length, second[k]);
-  }
-  for (int k = 0; k < d; ++k) {
-    sample.normal[k] = second[k] - along * tangent[k];
-    bend = std::hypot(bend, sample.normal[k]);
-  }
-  // The cross product itself does not lose digits where the curve is nearly straight.
-  sample.kappa = (d == 2 ? tangent[0] * second[1] - tangent[1] * second[0] : bend) / *speed;
-  // The cross product may be off by across, |C'|^3 by a factor of slowest.
-  const double across = values.error[2] / *speed * (1.0 + first) + length * first;
-  const double slowest = 1.0 / ((1.0 - first) * (1.0 - first) * (1.0 - first));
-  sample.noise = across * slowest / *speed + std::abs(sample.kappa) * (slowest - 1.0);
-  if (std::abs(sample.kappa) <= sample.noise) {
-    sample.noise += std::abs(sample.kappa);
-    sample.kappa = bend = 0.0;
-  }
-  for (int k = 0; k < d; ++k) sample.normal[k] = bend > 0.0 ? sample.normal[k] / bend : 0.0;
-  return sample;
-}
 
 /// Turns of the curvature, each between samples of which it is certain that one is higher.
 class TurnCounter {
@@ -210,26 +117,91 @@ int NumSpans(const BsplineBasis& basis) {
   return count;
 }
 
-/// Eight Gauss points a span: kappa^2 |C'| is no polynomial, but smooth there.
-double BendingEnergy(const BsplineCurve& curve) {
+/// Calls visit(span, breaks) for every span that is not empty, with places as GentleBreaks has
+/// them.
+template <typename Visitor>
+void ForEachSpan(const CurvatureReader& reader, const BsplineBasis& basis, const Visitor& visit) {
+  for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
+    const auto k = static_cast<std::size_t>(span);
+    if (basis.knots()[k] < basis.knots()[k + 1]) visit(span, reader.GentleBreaks(span));
+  }
+}
+
+/// Eight Gauss points between two breaks: kappa^2 |C'| is no polynomial, but smooth there.
+double BendingEnergy(const CurvatureReader& reader, const BsplineBasis& basis) {
   constexpr int kPoints = 8;
   const GaussRule rule = GaussLegendreRule(kPoints);
-  const BsplineBasis& basis = curve.basis();
-  const CurvatureReader reader(curve);
   double energy = 0.0;
-  for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
-    const double begin = basis.knots()[static_cast<std::size_t>(span)];
-    const double length = basis.knots()[static_cast<std::size_t>(span) + 1] - begin;
-    for (int g = 0; g < kPoints && length > 0.0; ++g) {
-      const auto k = static_cast<std::size_t>(g);
-      double speed = 0.0;
-      const CurvatureSample sample =
-          reader.Read(span, begin + 0.5 * (1.0 + rule.nodes[k]) * length, &speed);
-      if (!std::isfinite(sample.kappa)) continue;
-      energy += 0.5 * length * rule.weights[k] * sample.kappa * sample.kappa * speed;
+  ForEachSpan(reader, basis, [&](int span, const std::vector<double>& breaks) {
+    for (std::size_t b = 1; b < breaks.size(); ++b) {
+      const double length = breaks[b] - breaks[b - 1];
+      for (std::size_t k = 0; k < kPoints; ++k) {
+        double speed = 0.0;
+        const CurvatureSample sample =
+            reader.Read(span, breaks[b - 1] + 0.5 * (1.0 + rule.nodes[k]) * length, &speed);
+        if (!std::isfinite(sample.kappa)) continue;
+        energy += 0.5 * length * rule.weights[k] * sample.kappa * sample.kappa * speed;
+      }
     }
-  }
+  });
   return energy;
+}
+
+/// Samples for MeasureFairness, and of each its span.
+struct GentleSamples {
+  GentleSamples(const CurvatureReader& reader, const BsplineBasis& basis) {
+    constexpr int kMostSamples = 2'000'000;
+    const int per_span = std::clamp(kMostSamples / std::max(1, NumSpans(basis)), 4, 32);
+    const int least = per_span == 32 ? 4 : 1;  // between two breaks
+    ForEachSpan(reader, basis, [&](int span, const std::vector<double>& breaks) {
+      const double whole = breaks.back() - breaks.front();
+      for (std::size_t b = 1; b < breaks.size(); ++b) {
+        const double length = breaks[b] - breaks[b - 1];
+        const int count =
+            std::clamp(static_cast<int>(std::ceil(per_span * length / whole)), least, per_span);
+        for (int i = b == 1 ? 0 : 1; i <= count; ++i) {
+          double speed = 0.0;
+          const double t = i == count ? breaks[b] : breaks[b - 1] + i * length / count;
+          samples.push_back(reader.Read(span, t, &speed));
+          spans.push_back(span);
+        }
+      }
+    });
+  }
+  std::vector<CurvatureSample> samples;
+  std::vector<int> spans;
+};
+
+/// The largest |kappa|: of the samples, and between the neighbours of that one by golden sections.
+void FindLargest(const CurvatureReader& reader, const GentleSamples& all, CurveFairness* fairness) {
+  std::size_t largest = all.samples.size();
+  for (std::size_t i = 0; i < all.samples.size(); ++i) {
+    if (!(std::abs(all.samples[i].kappa) > fairness->max_curvature)) continue;
+    largest = i;
+    fairness->max_curvature = std::abs(all.samples[i].kappa);
+    fairness->max_curvature_at = all.samples[i].t;
+  }
+  if (largest == all.samples.size()) return;
+  const int span = all.spans[largest];
+  const auto neighbour = [&](std::size_t i) {
+    return i < all.samples.size() && all.spans[i] == span ? all.samples[i].t
+                                                          : all.samples[largest].t;
+  };
+  double low = neighbour(largest - 1), high = neighbour(largest + 1);
+  constexpr int kSections = 30;  // 1e-6 of the way between samples
+  constexpr double kGolden = 0.6180339887498949;
+  for (int section = 0; section < kSections && low < high; ++section) {
+    const double places[] = {high - kGolden * (high - low), low + kGolden * (high - low)};
+    double sizes[2];
+    for (int k = 0; k < 2; ++k) {
+      double speed = 0.0;
+      sizes[k] = std::abs(reader.Read(span, places[k], &speed).kappa);
+      if (!(sizes[k] > fairness->max_curvature)) continue;
+      fairness->max_curvature = sizes[k];
+      fairness->max_curvature_at = places[k];
+    }
+    (sizes[0] < sizes[1] ? low : high) = places[sizes[0] < sizes[1] ? 0 : 1];
+  }
 }
 
 }  // namespace
@@ -245,15 +217,21 @@ std::vector<CurvatureSample> SampleCurvature(const BsplineCurve& curve, int per_
     if (!(begin < end)) continue;
     double before = 0.0;
     const double step = (end - begin) / per_span;
-    for (int i = 0; i <= per_span; ++i) {
-      const double t = i == per_span ? end : begin + i * step;
+    std::vector<double> places;
+    for (int i = 0; i <= per_span; ++i) places.push_back(i == per_span ? end : begin + i * step);
+    for (const double slow : reader.SlowPlaces(span)) {
+      if (reader.WidthAt(span, slow) < step) places.push_back(slow);
+    }
+    std::sort(places.begin(), places.end());
+    for (std::size_t i = 0; i < places.size(); ++i) {
       double speed = 0.0;
-      CurvatureSample sample = reader.Read(span, t, &speed);
+      CurvatureSample sample = reader.Read(span, places[i], &speed);
       if (i > 0) {
         // Simpson's rule for the arc.
+        const double length = places[i] - places[i - 1];
         double middle = 0.0;
-        reader.Read(span, t - 0.5 * step, &middle);
-        s += step / 6.0 * (before + 4.0 * middle + speed);
+        reader.Read(span, places[i] - 0.5 * length, &middle);
+        s += length / 6.0 * (before + 4.0 * middle + speed);
       }
       sample.s = s;
       samples.push_back(sample);
@@ -268,26 +246,23 @@ std::vector<CurvatureSample> SampleCurvatureUpTo(const BsplineCurve& curve, int 
   const int spans = std::max(1, NumSpans(curve.basis()));
   std::vector<CurvatureSample> samples =
       SampleCurvature(curve, std::clamp(most / spans - 1, 1, kMostPerSpan));
-  const std::size_t size = samples.size(), kept = static_cast<std::size_t>(most);
-  if (size <= kept) return samples;
-  for (std::size_t i = 0; i < kept; ++i) samples[i] = samples[i * (size - 1) / (kept - 1)];
-  samples.resize(kept);
+  const std::size_t size = samples.size();
+  const auto steps = static_cast<std::size_t>(std::max(most - 1, 1));
+  if (size <= steps + 1) return samples;
+  for (std::size_t i = 0; i <= steps; ++i) samples[i] = samples[i * (size - 1) / steps];
+  samples.resize(steps + 1);
   return samples;
 }
 
 CurveFairness MeasureFairness(const BsplineCurve& curve) {
-  constexpr int kMostSamples = 2'000'000;
   constexpr double kOfCurvature = 0.5e-6;  // of either sample that is compared
   const BsplineBasis& basis = curve.basis();
-  const int per_span = std::clamp(kMostSamples / std::max(1, NumSpans(basis)), 4, 32);
-  const std::vector<CurvatureSample> samples = SampleCurvature(curve, per_span);
+  const CurvatureReader reader(curve);
+  const GentleSamples all(reader, basis);
+  const std::vector<CurvatureSample>& samples = all.samples;
   CurveFairness fairness;
-  fairness.bending_energy = BendingEnergy(curve);
-  for (const CurvatureSample& sample : samples) {
-    if (!(std::abs(sample.kappa) > fairness.max_curvature)) continue;
-    fairness.max_curvature = std::abs(sample.kappa);
-    fairness.max_curvature_at = sample.t;
-  }
+  fairness.bending_energy = BendingEnergy(reader, basis);
+  FindLargest(reader, all, &fairness);
   fairness.curvature_variation = CountTurns(samples, basis.periodic(), 0.0).variation();
   std::vector<CurvaturePlace> turns =
       std::move(*CountTurns(samples, basis.periodic(), kOfCurvature).turns());

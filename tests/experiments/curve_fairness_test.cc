@@ -273,6 +273,38 @@ TEST(CurveFairness, OfClosedCurvesCountsAcrossTheSeam) {
   EXPECT_NEAR(eight.inflections[1], 0.75, 1e-3);
 }
 
+// C(t) = (t, k t^2) on [-0.3, 1]: kappa = 2 k / (1 + x^2)^(3/2) with x = 2 k t, and the integral of
+// kappa^2 ds = 2 k times that of (1 + x^2)^(-5/2), whose integral is x / r - x^3 / (3 r^3), r =
+// |(1, x)|. The bend at the vertex is as narrow as 1 / k.
+TEST(CurveFairness, SeesBendsHoweverSharp) {
+  std::string error;
+  const auto basis =
+      BsplineBasis::Make(3, false, {-0.3, -0.3, -0.3, -0.3, 1.0, 1.0, 1.0, 1.0}, &error);
+  ASSERT_TRUE(basis.has_value()) << error;
+  for (const double k : {1.0, 1e2, 1e4, 1e6}) {
+    SCOPED_TRACE(k);
+    // Blossoms: of t the mean, of t^2 the mean of the products of two.
+    Points points(4, 2);
+    for (int j = 0; j < 4; ++j) {
+      const double a = j > 0 ? 1.0 : -0.3, b = j > 1 ? 1.0 : -0.3, c = j > 2 ? 1.0 : -0.3;
+      points.row(j) << (a + b + c) / 3.0, k * (a * b + b * c + c * a) / 3.0;
+    }
+    const CurveFairness fairness = MeasureFairness(BsplineCurve(*basis, points));
+    const auto integral = [](double x) {
+      const double r = std::hypot(1.0, x);
+      return x / r - std::pow(x / r, 3) / 3.0;
+    };
+    const double energy = 2.0 * k * (integral(2.0 * k) - integral(-0.6 * k));
+    EXPECT_NEAR(fairness.bending_energy, energy, 1e-6 * energy);
+    EXPECT_NEAR(fairness.max_curvature, 2.0 * k, 2e-6 * k);
+    EXPECT_NEAR(fairness.max_curvature_at, 0.0, 1e-3 / k);
+    const auto kappa = [k](double t) { return 2.0 * k / std::pow(std::hypot(1.0, 2 * k * t), 3); };
+    const double variation = 4.0 * k - kappa(-0.3) - kappa(1.0);
+    EXPECT_NEAR(fairness.curvature_variation, variation, 0.01 * variation);
+    EXPECT_EQ(fairness.num_curvature_extrema, 1);
+  }
+}
+
 TEST(CurvatureSamples, KnowArcLengthPlaceAndNormal) {
   const double radius = 2.0;
   const std::vector<CurvatureSample> samples = SampleCurvature(Ellipse(radius, radius, 40), 8);
