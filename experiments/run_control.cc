@@ -221,7 +221,12 @@ StopReason RunControl::CheckStop(const TraceRow& row) {
   }
   // A method that converges may rise at first, but not by ten digits.
   constexpr double kDiverged = 1e10;
-  if (row.gradient_norm > kDiverged * result_->start_gradient_norm &&
+  // A start at a minimum of E that misses constraints has hardly a gradient to compare with;
+  // inside, where data are of size 1, other gradients are of about that size.
+  double usual = result_->start_gradient_norm;
+  if (problem_.nonlinear_constraints() != nullptr)
+    usual = std::max(usual, problem_.units().gradient);
+  if (row.gradient_norm > kDiverged * usual &&
       row.gradient_norm > kDiverged * result_->gradient_floor) {
     return StopReason::kDiverged;
   }

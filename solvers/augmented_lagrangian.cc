@@ -188,7 +188,10 @@ std::optional<Outcome> AugmentedLagrangianSolver::Round(Objective* objective, Ru
   const Outcome outcome = base_->Minimize(&inner, &round, x);
   if (context->stop_reason() != StopReason::kNotRun) {
     // The run may book nothing more, but what it gives back is to meet the constraints.
-    if (x->allFinite()) ProjectOntoConstraints(problem, multipliers->values(), x);
+    const bool is_met =
+        x->allFinite() &&
+        MeasureViolation(problem, objective->Expand(*x)).largest <= kConstraintTolerance;
+    if (!is_met && x->allFinite()) ProjectOntoConstraints(problem, multipliers->values(), x);
     return Outcome{context->stop_reason(), ""};
   }
   if (outcome.reason == StopReason::kNumericalFailure) return outcome;

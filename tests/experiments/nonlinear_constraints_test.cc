@@ -311,6 +311,31 @@ TEST(NonlinearConstraints, StandBesideLinearOnesWhichStayEliminated) {
   EXPECT_NEAR(CurvatureAt(found, 0.5), 1.5 * kappa, kHeld * size);
 }
 
+// From the minimum of E itself, whose gradient is rounding: there is nothing to compare later ones
+// with.
+TEST(NonlinearConstraints, AreMetFromAStartThatIsTheMinimumWithoutThem) {
+  const Cubic p = PlaneCubic();
+  Points data(12, 2);
+  for (int i = 0; i < 12; ++i) data.row(i) = CubicAt(p, kPlaces[i])[0].transpose();
+  FitSpec spec = Constrained(3, 4, "curvature/t=0.5/kappa=-2");
+  const RunResult whole =
+      Solve(*MakeFit(DataOf(data, kPlaces), spec), "augmented_lagrangian:lbfgs");
+  spec.start_points = p;
+  const auto problem = MakeFit(DataOf(data, kPlaces), spec);
+  for (const char* base : {"lbfgs", "newton", "ceres_lm"}) {
+    SCOPED_TRACE(base);
+    const RunResult run = Solve(*problem, std::string("augmented_lagrangian:") + base);
+    EXPECT_LT(run.start_gradient_norm, 1e-12);
+    EXPECT_NE(run.outcome.reason, StopReason::kDiverged);
+    EXPECT_LE(run.violation, kHeld * problem->curve_fit()->size());
+    EXPECT_NEAR(run.energy, whole.energy, 1e-9 * whole.energy);
+    // A floor that is claimed is one.
+    if (run.outcome.reason == StopReason::kRoundingFloor) {
+      EXPECT_LE(run.gradient_norm, run.gradient_floor);
+    }
+  }
+}
+
 TEST(NonlinearConstraints, RunControlCountsAllRoundsAndTheTraceShowsWhatIsMissed) {
   const Cubic p = PlaneCubic();
   Points data(12, 2);
