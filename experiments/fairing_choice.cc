@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "experiments/audited_terms.h"
 #include "experiments/fairing_rules.h"
@@ -142,11 +143,13 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   }
   // Terms at the ends and the like pull, but are no data that anything could be told from.
   std::vector<const RowSource*> distances, others;
+  double weight = 0.0;  // of a squared distance in the residuals
   for (std::size_t i = 0; i < problem->terms().size(); ++i) {
     if (i == fairing) continue;
     const Problem::TermInstance& term = problem->terms()[i];
-    (IsDistanceTerm(term, *problem->curve_fit()) ? distances : others)
-        .push_back(term.family->rows());
+    const bool is_distance = IsDistanceTerm(term, *problem->curve_fit());
+    (is_distance ? distances : others).push_back(term.family->rows());
+    if (is_distance) weight += term.family->weight();
   }
   const auto data_view = CurveView::Make(*problem, distances, nullptr);
   const auto fairing_view =
@@ -162,8 +165,10 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   // Constraints on single coordinates make one system of all of them.
   const int dimension = data_view->dimension();
   const int systems = problem->curve_fit()->dimension() / dimension;
-  const FairingRuleSetting setting = {problem->units().energy, dimension, systems, noise};
+  const double root = std::sqrt(weight);
+  const FairingRuleSetting setting = {problem->units().energy, dimension, systems, root * noise};
   if (!ChooseByRule(family, rule, setting, choice, error)) return false;
+  choice->noise /= root;
   SetWeight(choice->weight, &spec->terms[fairing]);
   choice->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return true;

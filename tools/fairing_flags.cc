@@ -32,8 +32,8 @@ namespace {
 
 /// A term that has units and does not say them.
 bool TakesUnits(const NameSpec& term) {
-  const bool has_units =
-      term.name == "fairing" || term.name == "end_tangent" || term.name == "end_curvature";
+  const bool has_units = term.name == "fairing" || term.name == "curve_fairing" ||
+                         term.name == "end_tangent" || term.name == "end_curvature";
   return has_units && std::none_of(term.options.begin(), term.options.end(),
                                    [](const auto& option) { return option.first == "units"; });
 }
@@ -55,20 +55,33 @@ void ApplyUnits(FitSpec* spec) {
   }
 }
 
+/// The guard of an estimated scale comes by itself (robust_start.h).
+bool GetsAGuard(const FitSpec& spec) {
+  const auto is_estimated = [](const NameSpec& term) {
+    return std::any_of(term.options.begin(), term.options.end(), [](const auto& option) {
+      return option.first == "loss_scale" && option.second == "mad";
+    });
+  };
+  return spec.parameter_kind != ParameterKind::kFixed && !spec.guard.has_value() &&
+         std::any_of(spec.terms.begin(), spec.terms.end(), is_estimated);
+}
+
 /// Flags of fairing terms where there are none.
 bool CheckFairingTerms(const FitSpec& spec, std::string* error) {
   const bool adds_fairing = AddsFairing(spec);
   if (WasGiven("fairing_units") && !adds_fairing &&
       std::none_of(spec.terms.begin(), spec.terms.end(), TakesUnits)) {
-    *error = RefusedFlag("fairing_units", FLAGS_fairing_units,
-                         "nothing, without --fairing or a term fairing, end_tangent or "
-                         "end_curvature that does not say its units");
+    *error =
+        RefusedFlag("fairing_units", FLAGS_fairing_units,
+                    "nothing, without --fairing or a term fairing, curve_fairing, end_tangent or "
+                    "end_curvature that does not say its units");
     return false;
   }
   const bool has_fairing = std::any_of(
       spec.terms.begin(), spec.terms.end(),
       [](const NameSpec& term) { return term.name == "fairing" || term.name == "curve_fairing"; });
-  if (WasGiven("span_weights") && !adds_fairing && !has_fairing && !HasGuard(spec.guard)) {
+  if (WasGiven("span_weights") && !adds_fairing && !has_fairing && !HasGuard(spec.guard) &&
+      !GetsAGuard(spec)) {
     *error = RefusedFlag("span_weights", FLAGS_span_weights,
                          "nothing, without --fairing, a fairing term or a guard");
     return false;

@@ -270,6 +270,24 @@ TEST(FairingChoice, ByTheLCurveIsAsSharpAsTheCornerBetweenSamples) {
   }
 }
 
+// The curve belongs to the ratio of the weights; noise is that of the points, whatever they count.
+TEST(FairingChoice, TakesNoiseInTheUnitOfTheDataWhateverTheDataWeigh) {
+  for (const FairingRule rule :
+       {FairingRule::kGcv, FairingRule::kRisk, FairingRule::kDiscrepancy}) {
+    SCOPED_TRACE(ToString(rule));
+    const NoisyCurve curve(14);
+    FairingChoice plain, heavy;
+    std::string error;
+    FitSpec spec = curve.spec;
+    ASSERT_TRUE(ChooseFairingWeight(curve.data, rule, curve.noise, &spec, &plain, &error)) << error;
+    spec = curve.spec;
+    ASSERT_TRUE(ParseNameSpecList("interpolation/weight=100,fairing", &spec.terms, &error));
+    ASSERT_TRUE(ChooseFairingWeight(curve.data, rule, curve.noise, &spec, &heavy, &error)) << error;
+    EXPECT_NEAR(heavy.weight, 100.0 * plain.weight, 0.01 * heavy.weight);
+    EXPECT_NEAR(heavy.noise, plain.noise, 1e-3 * plain.noise);
+  }
+}
+
 TEST(FairingChoice, CountsNoTermAtTheEndsAsData) {
   NoisyCurve curve(11);
   FairingChoice plain, choice;

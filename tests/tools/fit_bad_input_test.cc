@@ -269,10 +269,11 @@ TEST(FitCommand, RefusesFlagsOfFairingWithoutAnyToApplyThemTo) {
     refuse({flag}, parts);
     refuse({flag, "--terms=interpolation"}, parts);
     refuse({flag, "--guard=bending"}, parts);
-    refuse({flag, "--terms=interpolation,curve_fairing"}, parts);
+    refuse({flag, "--terms=interpolation,curve_fairing/units=source"}, parts);
     refuse({flag, "--terms=interpolation,fairing/units=source"}, parts);
     accept({flag, "--terms=interpolation,fairing"});
     accept({flag, "--terms=interpolation,end_tangent"});
+    accept({flag, "--terms=interpolation,curve_fairing/weight=1e-6"});
     accept({flag, "--fairing=discrepancy", "--noise=0.6", "--solver=banded_qr"});
   }
   const std::vector<std::string> parts = {"--span_weights: found ", "allowed: nothing, without"};
