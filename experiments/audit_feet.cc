@@ -118,6 +118,10 @@ void AuditFeet(const AuditedFit& fit, AuditReport* report) {
     const Real weight = EnergyOfPoint(fit, i, here.squared_distance).largest;
     report->foot_rounding +=
         static_cast<double>(RoundingOfFoot(fit, point, fit.parameters[i], weight, &curve));
+    // Of a point on the curve, to what feet are certified to, any residual may be left.
+    if (distance <= kAllowed * largest) {
+      report->foot_rounding += 2.0 * static_cast<double>(weight) * kAllowed * largest;
+    }
     const double excess = distance - NearestDistance(samples, point, fit.dimension);
     // Written so that NaN is not lost.
     if (!(excess <= report->foot_excess)) report->foot_excess = excess;

@@ -49,19 +49,36 @@ Points AroundTheData(const BsplineBasis& basis, const Points& data, bool circle)
   return start;
 }
 
+constexpr char kNoFeet[] =
+    "the start is a single point, to which every parameter leads, so that no foot says where the "
+    "curve is to go; projected parameters need a curve to start from: data, circle or ellipse";
+
+/// Whether a start has all control points at one place, to rounding, and the data are elsewhere.
+bool IsOnePlace(const Points& start, const Points& data) {
+  constexpr double kRounding = 1e-14;
+  const auto size = [](const Points& points) {
+    return (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+  };
+  const double of_data = size(data);
+  return start.rows() > 1 && of_data > 0.0 &&
+         size(start) <= kRounding * (of_data + data.cwiseAbs().maxCoeff());
+}
+
 }  // namespace
 
 bool CurveFit::CheckStart(std::string* error) const {
   if (spec_.start_points.size() > 0) {
     const int n = basis_->num_control_points();
     if (spec_.start_points.rows() == n && spec_.start_points.cols() == dimension() &&
-        spec_.start_points.allFinite()) {
-      return true;
+        (spec_.start_points.array().abs() <= kLargestNumber).all()) {
+      if (!is_projected() || !IsOnePlace(spec_.start_points, data_.points)) return true;
+      *error = kNoFeet;
+      return false;
     }
     *error = "the start has " + std::to_string(spec_.start_points.rows()) +
              " control points of dimension " + std::to_string(spec_.start_points.cols()) +
-             "; allowed: " + std::to_string(n) + " finite ones of dimension " +
-             std::to_string(dimension());
+             "; allowed: " + std::to_string(n) + " of dimension " + std::to_string(dimension()) +
+             ", of coordinates from -1e150 to 1e150";
     return false;
   }
   const bool is_round = spec_.start == kCircle || spec_.start == kEllipse;
@@ -71,6 +88,10 @@ bool CurveFit::CheckStart(std::string* error) const {
   }
   if (is_round && dimension() < 2) {
     *error = "start is " + spec_.start + ", which needs points of dimension 2 or more";
+    return false;
+  }
+  if (is_projected() && spec_.start == "centroid" && IsOnePlace(StartPoints(), data_.points)) {
+    *error = kNoFeet;
     return false;
   }
   return true;

@@ -6,10 +6,10 @@
 
 #include "experiments/atomic_file.h"
 #include "experiments/curvature_figure.h"
+#include "experiments/end_notes.h"
 #include "experiments/figures.h"
 #include "experiments/fit_report.h"
 #include "experiments/max_distance_fit.h"
-#include "experiments/minimum_note.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
 #include "solvers/solver_registry.h"
@@ -198,6 +198,7 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
   NoteDistanceFromMinimum(*problem, &run);
   FitReport report = MeasureFit(*problem, run, spec);
   report.fairing_choice = std::move(choice);
+  if (report.fairness.has_value()) NoteErrorsOfRules(*problem, *report.fairness, &run);
   Written written;
   if (!WriteFiles(*problem, run, spec, report, &written, &output->error)) return kBadInput;
   output->results = FitSummary(request.label, *problem, run, report, written.files);

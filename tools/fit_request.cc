@@ -181,10 +181,12 @@ bool ApplyStart(FitRequest* request, std::string* error) {
     return true;
   }
   std::error_code ignored;
-  *error = std::filesystem::exists(FLAGS_start, ignored)
-               ? "--start: " + *error
-               : RefusedFlag("start", FLAGS_start,
-                             "data, centroid, circle, ellipse or a file of batten fit --out");
+  *error =
+      std::filesystem::exists(FLAGS_start, ignored)
+          ? "--start: " + *error
+          : RefusedFlag("start", FLAGS_start,
+                        "data, centroid, circle, ellipse or a file of batten fit --out; there is "
+                        "no such file");
   return false;
 }
 

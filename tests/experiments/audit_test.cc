@@ -8,9 +8,12 @@
 #include <numeric>
 #include <random>
 
+#include "experiments/fit_report.h"
 #include "tests/experiments/bezier_segment.h"
+#include "tests/experiments/outlines.h"
 #include "tests/not_a_number.h"
 #include "tests/roundoff.h"
+#include "tests/solvers/test_fits.h"
 
 namespace batten {
 namespace {
@@ -193,6 +196,22 @@ TEST(Audit, LeavesOutParametersThatAreHeld) {
   fit.parameter_states = {ParameterState::kHeld};
   EXPECT_EQ(Audit(fit).gradient_norm, fixed);
   EXPECT_EQ(Audit(fit).pull_norm, 0.0);
+}
+
+// Two points on the curve: their distances of 1e-13 are what feet are certified to, no more.
+TEST(Audit, BearsWhatFeetOnTheCurveAreCertifiedTo) {
+  FitSpec spec = MakeSpec(3, false, 6, "foot_point");
+  spec.parameter_kind = ParameterKind::kProjected;
+  spec.start = "ellipse";
+  DataSet data;
+  data.name = "two";
+  data.points.resize(2, 2);
+  data.points << 0.0, 0.0, 1.0, 1.0;
+  const auto problem = MakeFit(data, spec);
+  for (const char* solver : {"lbfgs", "newton", "lm_schur"}) {
+    const FitReport report = MeasureFit(*problem, RunSolver(*problem, solver), RunSpec());
+    EXPECT_TRUE(report.audited && report.verdict.holds) << solver << ": " << report.verdict.failure;
+  }
 }
 
 TEST(Audit, TellsPressedParametersPastAnEndFromThoseThatEDrawsBack) {

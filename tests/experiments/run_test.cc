@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/minimum_note.h"
+#include "experiments/end_notes.h"
 #include "experiments/sparse_run.h"
 #include "tests/experiments/outlines.h"
 #include "tests/roundoff.h"
@@ -305,6 +305,19 @@ TEST(Run, SaysHowFarFromTheMinimumAHeavyTermLetsItEnd) {
     bool noted = false;
     NotedDistance(*problem, "banded_qr", &noted);
     EXPECT_FALSE(noted);
+  }
+}
+
+TEST(Run, SaysWhereTheRuleOfCurveFairingMissesBends) {
+  for (const auto& [points, is_missed] : {std::pair("1", true), {"32", false}}) {
+    const auto problem =
+        MakeFit(MakeNoisyLoop(40, 2, 11),
+                MakeSpec(3, true, 9,
+                         std::string("interpolation,curve_fairing/weight=1e-3/points=") + points));
+    RunResult run = RunSolver(*problem, "lbfgs");
+    NoteErrorsOfRules(*problem, MeasureFairness(problem->curve_fit()->Curve(run.x)), &run);
+    const std::vector<std::string> names = NoteNames(run);
+    EXPECT_EQ(std::count(names.begin(), names.end(), "curve_fairing"), is_missed ? 1 : 0) << points;
   }
 }
 

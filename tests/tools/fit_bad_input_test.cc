@@ -253,6 +253,16 @@ TEST(FitCommand, RefusesFairingThatItCannotChoose) {
          {"found 2 weights of spans", "the curve has 1 spans"});
 }
 
+// On a curve that is one point every parameter is a foot, and E has no gradient to go by.
+TEST(FitCommand, RefusesProjectedParametersFromAPoint) {
+  ExpectRefused(FitText(kSixPoints, {"--parameter_kind=projected", "--start=centroid"}),
+                {"the start is a single point", "data, circle or ellipse"});
+  EXPECT_EQ(FitText("x,y\n2,1\n2,1\n2,1\n2,1\n",
+                    {"--parameter_kind=projected", "--start=centroid", "--parameters=uniform"})
+                .status,
+            0);
+}
+
 TEST(FitCommand, RefusesFlagsOfFairingWithoutAnyToApplyThemTo) {
   const auto refuse = [](const std::vector<std::string>& flags,
                          const std::vector<std::string>& parts) {
