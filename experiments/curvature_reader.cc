@@ -132,8 +132,11 @@ std::vector<double> CurvatureReader::GentleBreaks(int span) const {
     for (const int side : {-1, 1}) {
       if ((side < 0 && c == 0) || (side > 0 && c + 1 == centres.size())) continue;
       const double half = 0.5 * std::abs(centres[side < 0 ? c - 1 : c + 1] - centres[c]);
-      for (double away = width; away < half; away *= 2.0)
+      double away = width;
+      while (away < half) {
         breaks.push_back(centres[c] + side * away);
+        away *= 2.0;
+      }
     }
   }
   std::sort(breaks.begin(), breaks.end());

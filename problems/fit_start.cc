@@ -77,8 +77,8 @@ bool CurveFit::CheckStart(std::string* error) const {
     }
     *error = "the start has " + std::to_string(spec_.start_points.rows()) +
              " control points of dimension " + std::to_string(spec_.start_points.cols()) +
-             "; allowed: " + std::to_string(n) + " of dimension " + std::to_string(dimension()) +
-             ", of coordinates from -1e150 to 1e150";
+             "; allowed: " + std::to_string(n) + " finite ones of dimension " +
+             std::to_string(dimension()) + ", of coordinates from -1e150 to 1e150";
     return false;
   }
   const bool is_round = spec_.start == kCircle || spec_.start == kEllipse;
