@@ -117,59 +117,56 @@ int NumSpans(const BsplineBasis& basis) {
   return count;
 }
 
-/// Calls visit(span, breaks) for every span that is not empty, with places as GentleBreaks has
-/// them.
-template <typename Visitor>
-void ForEachSpan(const CurvatureReader& reader, const BsplineBasis& basis, const Visitor& visit) {
-  for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
-    const auto k = static_cast<std::size_t>(span);
-    if (basis.knots()[k] < basis.knots()[k + 1]) visit(span, reader.GentleBreaks(span));
-  }
-}
-
 /// Eight Gauss points between two breaks: kappa^2 |C'| is no polynomial, but smooth there.
-double BendingEnergy(const CurvatureReader& reader, const BsplineBasis& basis) {
+double BendingEnergy(const CurvatureReader& reader, int span, const std::vector<double>& breaks) {
   constexpr int kPoints = 8;
-  const GaussRule rule = GaussLegendreRule(kPoints);
+  static const GaussRule kRule = GaussLegendreRule(kPoints);
   double energy = 0.0;
-  ForEachSpan(reader, basis, [&](int span, const std::vector<double>& breaks) {
-    for (std::size_t b = 1; b < breaks.size(); ++b) {
-      const double length = breaks[b] - breaks[b - 1];
-      for (std::size_t k = 0; k < kPoints; ++k) {
-        double speed = 0.0;
-        const CurvatureSample sample =
-            reader.Read(span, breaks[b - 1] + 0.5 * (1.0 + rule.nodes[k]) * length, &speed);
-        if (!std::isfinite(sample.kappa)) continue;
-        energy += 0.5 * length * rule.weights[k] * sample.kappa * sample.kappa * speed;
-      }
+  for (std::size_t b = 1; b < breaks.size(); ++b) {
+    const double length = breaks[b] - breaks[b - 1];
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      double speed = 0.0;
+      const CurvatureSample sample =
+          reader.Read(span, breaks[b - 1] + 0.5 * (1.0 + kRule.nodes[k]) * length, &speed);
+      if (!std::isfinite(sample.kappa)) continue;
+      energy += 0.5 * length * kRule.weights[k] * sample.kappa * sample.kappa * speed;
     }
-  });
+  }
   return energy;
 }
 
-/// Samples for MeasureFairness, and of each its span.
+/// What MeasureFairness reads: samples, of each its span, and the bending energy.
 struct GentleSamples {
   GentleSamples(const CurvatureReader& reader, const BsplineBasis& basis) {
     constexpr int kMostSamples = 2'000'000;
     const int per_span = std::clamp(kMostSamples / std::max(1, NumSpans(basis)), 4, 32);
+    for (int span = basis.first_span(); span <= basis.last_span(); ++span) {
+      const auto k = static_cast<std::size_t>(span);
+      if (!(basis.knots()[k] < basis.knots()[k + 1])) continue;
+      const std::vector<double> breaks = reader.GentleBreaks(span);
+      bending_energy += BendingEnergy(reader, span, breaks);
+      AddSamples(reader, span, breaks, per_span);
+    }
+  }
+  void AddSamples(const CurvatureReader& reader, int span, const std::vector<double>& breaks,
+                  int per_span) {
     const int least = per_span == 32 ? 4 : 1;  // between two breaks
-    ForEachSpan(reader, basis, [&](int span, const std::vector<double>& breaks) {
-      const double whole = breaks.back() - breaks.front();
-      for (std::size_t b = 1; b < breaks.size(); ++b) {
-        const double length = breaks[b] - breaks[b - 1];
-        const int count =
-            std::clamp(static_cast<int>(std::ceil(per_span * length / whole)), least, per_span);
-        for (int i = b == 1 ? 0 : 1; i <= count; ++i) {
-          double speed = 0.0;
-          const double t = i == count ? breaks[b] : breaks[b - 1] + i * length / count;
-          samples.push_back(reader.Read(span, t, &speed));
-          spans.push_back(span);
-        }
+    const double whole = breaks.back() - breaks.front();
+    for (std::size_t b = 1; b < breaks.size(); ++b) {
+      const double length = breaks[b] - breaks[b - 1];
+      const int count =
+          std::clamp(static_cast<int>(std::ceil(per_span * length / whole)), least, per_span);
+      for (int i = b == 1 ? 0 : 1; i <= count; ++i) {
+        double speed = 0.0;
+        const double t = i == count ? breaks[b] : breaks[b - 1] + i * length / count;
+        samples.push_back(reader.Read(span, t, &speed));
+        spans.push_back(span);
       }
-    });
+    }
   }
   std::vector<CurvatureSample> samples;
   std::vector<int> spans;
+  double bending_energy = 0.0;
 };
 
 /// The largest |kappa|: of the samples, and between the neighbours of that one by golden sections.
@@ -261,7 +258,7 @@ CurveFairness MeasureFairness(const BsplineCurve& curve) {
   const GentleSamples all(reader, basis);
   const std::vector<CurvatureSample>& samples = all.samples;
   CurveFairness fairness;
-  fairness.bending_energy = BendingEnergy(reader, basis);
+  fairness.bending_energy = all.bending_energy;
   FindLargest(reader, all, &fairness);
   fairness.curvature_variation = CountTurns(samples, basis.periodic(), 0.0).variation();
   std::vector<CurvaturePlace> turns =
