@@ -105,6 +105,12 @@ bool FromString(const std::string& text, FairingRule* rule) {
   return false;
 }
 
+const char* ScoreName(FairingRule rule) {
+  constexpr const char* kNames[] = {"V", "estimated risk over noise^2",
+                                    "RSS over what the noise leaves", "curvature of the L"};
+  return kNames[static_cast<int>(rule)];
+}
+
 bool NeedsNoise(FairingRule rule) {
   return rule == FairingRule::kRisk || rule == FairingRule::kDiscrepancy;
 }

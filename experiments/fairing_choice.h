@@ -21,6 +21,8 @@ namespace batten {
 enum class FairingRule { kGcv, kRisk, kDiscrepancy, kLCurve };
 const char* ToString(FairingRule rule);
 bool FromString(const std::string& text, FairingRule* rule);
+/// What FairingSample::score is by the rule, for figures and summaries.
+const char* ScoreName(FairingRule rule);
 /// Whether the rule judges by a noise that must be given.
 bool NeedsNoise(FairingRule rule);
 

@@ -35,12 +35,10 @@ PlotPanel Panel(const FairingChoice& choice, const std::string& title,
 }  // namespace
 
 std::vector<PlotPanel> FairingChoicePanels(const FairingChoice& choice) {
-  constexpr const char* kScoreNames[] = {"V", "estimated risk over noise^2",
-                                         "RSS over what the noise leaves", "curvature of the L"};
   const bool is_l_curve = choice.rule == FairingRule::kLCurve;
   std::vector<PlotPanel> panels = {Panel(choice, std::string("choice by ") + ToString(choice.rule),
                                          kWeight, &FairingSample::score, !is_l_curve)};
-  panels.back().y_label = kScoreNames[static_cast<int>(choice.rule)];
+  panels.back().y_label = ScoreName(choice.rule);
   if (is_l_curve) {
     panels.push_back(Panel(choice, "the L-curve", kResidual, &FairingSample::bend, true));
     panels.back().y_label = "bend: integral at weight 1";

@@ -109,11 +109,8 @@ std::string FairnessText(const CurveFairness& fairness) {
 }
 
 std::string ChoiceLines(const FairingChoice& choice) {
-  constexpr const char* kScoreNames[] = {"V ", "estimated risk over noise^2 ",
-                                         "RSS over what the noise leaves ", "curvature of the L "};
-  const char* const score = kScoreNames[static_cast<int>(choice.rule)];
   const std::string text = "weight " + Short(choice.weight) + " by " + ToString(choice.rule) +
-                           ": " + score + Short(choice.chosen.score) + ", " +
+                           ": " + ScoreName(choice.rule) + " " + Short(choice.chosen.score) + ", " +
                            Short(choice.chosen.trace) + " effective control points, noise " +
                            Short(choice.noise) + "; " +
                            Plural(static_cast<long>(choice.samples.size()), "solve") + " in " +
