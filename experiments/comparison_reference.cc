@@ -31,13 +31,23 @@ DirectReference::DirectReference(const Problem& problem)
   if (const CurveFit* fit = problem.curve_fit()) {
     scaled_size_ = fit->size() * fit->setting().scale;
   }
+}
+
+double DirectReference::StartProduct() const {
+  if (start_product_ >= 0.0) return start_product_;
+  const Eigen::VectorXd v = objective_.start() - minimum_;
+  const double product = objective_.curve_view()->rows().SquaredNormOfProduct(v.data());
+  start_product_ = product > SquaredProductFloor() ? product : 0.0;
+  return start_product_;
+}
+
+double DirectReference::GradientAtMinimum() const {
+  if (gradient_at_minimum_ >= 0.0) return gradient_at_minimum_;
   Eigen::VectorXd gradient;
   double energy = 0.0;
   objective_.EnergyAndGradient(minimum_, &energy, &gradient);
   gradient_at_minimum_ = gradient.norm() + objective_.GradientRoundingFloor(minimum_);
-  const Eigen::VectorXd v = start - minimum_;
-  const double product = view->rows().SquaredNormOfProduct(v.data());
-  if (product > SquaredProductFloor()) start_product_ = product;
+  return gradient_at_minimum_;
 }
 
 /// ||A(P - P*)||^2 below this is rounding of P and P*: some 16 roundings of every product.
@@ -60,9 +70,9 @@ Eigen::VectorXd DirectReference::FromMinimum(const Eigen::VectorXd& x) const {
 }
 
 double DirectReference::Gap(const Eigen::VectorXd& x) const {
-  if (!known_ || start_product_ == 0.0 || x.size() != problem_->num_variables()) return NAN;
+  if (!known_ || x.size() != problem_->num_variables() || StartProduct() == 0.0) return NAN;
   const Eigen::VectorXd v = FromMinimum(x);
-  return objective_.curve_view()->rows().SquaredNormOfProduct(v.data()) / start_product_;
+  return objective_.curve_view()->rows().SquaredNormOfProduct(v.data()) / StartProduct();
 }
 
 double DirectReference::Excess(const Eigen::VectorXd& x) const {
@@ -133,7 +143,7 @@ double DirectReference::AllowedDistance(const RunResult& run) const {
   constexpr double kRoundings = 16.0;
   if (!known_) return std::numeric_limits<double>::infinity();
   const double gradient =
-      (run.gradient_norm + run.gradient_floor) / problem_->units().gradient + gradient_at_minimum_;
+      (run.gradient_norm + run.gradient_floor) / problem_->units().gradient + GradientAtMinimum();
   const double rounding = kRoundings * kEpsilon * (minimum_.norm() + scaled_size_);
   if (unique_) {
     const double eigenvalue = SmallestEigenvalue();

@@ -38,16 +38,19 @@ class DirectReference {
   double LargestRowProduct(const Eigen::VectorXd& v) const;
   double SmallestEigenvalue() const;  // of N; 0 if singular to working precision
   double SquaredProductFloor() const;
+  double StartProduct() const;       // ||A(start - P*)||^2; 0 if that is noise
+  double GradientAtMinimum() const;  // |g(P*)| as computed, and its rounding
 
   const Problem* problem_;
   mutable Objective objective_;
   bool known_ = false;
   bool unique_ = false;
-  double scaled_size_ = 1.0;                   // of the data, as inside
-  double gradient_at_minimum_ = 0.0;           // |g(P*)| as computed, and its rounding
-  Eigen::VectorXd minimum_;                    // free variables
-  double start_product_ = 0.0;                 // ||A(start - P*)||^2; 0 if that is noise
-  mutable double smallest_eigenvalue_ = -1.0;  // < 0: not known yet
+  double scaled_size_ = 1.0;  // of the data, as inside
+  Eigen::VectorXd minimum_;   // free variables
+  // Below 0: not known yet. Rows stay out of memory until one is asked for.
+  mutable double gradient_at_minimum_ = -1.0;
+  mutable double start_product_ = -1.0;
+  mutable double smallest_eigenvalue_ = -1.0;
 };
 
 }  // namespace batten

@@ -11,7 +11,8 @@ namespace batten {
 
 void NoteDistanceFromMinimum(const Problem& problem, RunResult* run) {
   constexpr double kFar = 1e-6;
-  if (!IsSuccess(run->outcome.reason) || !run->x.allFinite()) return;
+  const bool is_direct_answer = run->solver.name == "banded_qr";
+  if (is_direct_answer || !IsSuccess(run->outcome.reason) || !run->x.allFinite()) return;
   const DirectReference direct(problem);
   if (!direct.known() || !direct.unique()) return;
   const double distance = direct.Distance(run->x);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "experiments/audited_terms.h"
 #include "experiments/fairing_rules.h"
@@ -137,6 +138,14 @@ bool ChooseFairingWeight(const DataSet& data, FairingRule rule, double noise, Fi
   SetWeight(1.0, &spec->terms[fairing]);
   const std::unique_ptr<Problem> problem = MakeFitProblem(data, *spec, error);
   if (problem == nullptr) return false;
+  const double least_noise = std::numeric_limits<double>::epsilon() * problem->curve_fit()->size();
+  if (NeedsNoise(rule) && noise < least_noise) {
+    *error =
+        std::string("fairing=") + ToString(rule) + " is told of noise " + NumberText(noise) +
+        ", which the rounding of data of this size hides; allowed: " + NumberText(least_noise) +
+        " or more";
+    return false;
+  }
   const std::string why_not = WhyNotLinear(*problem);
   if (!why_not.empty()) {
     *error = std::string("fairing=") + ToString(rule) + " " + why_not;

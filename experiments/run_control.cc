@@ -13,6 +13,7 @@
 #include "experiments/kept_rows.h"
 #include "problems/constraint_projection.h"
 #include "problems/fit_problem.h"
+#include "solvers/options_note.h"
 
 namespace batten {
 namespace {
@@ -117,13 +118,20 @@ void RunControl::OffTheClock(const std::function<void()>& work) {
 }
 
 void RunControl::Note(const std::string& name, const std::string& value) {
-  // A wrapped solver is run many times, and says the same each time.
   auto& notes = result_->notes;
   std::pair<std::string, std::string> note(name, value);
   // It goes to terminals as it is.
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   std::replace_if(note.second.begin(), note.second.end(), is_control, ' ');
-  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  // A wrapped solver is run many times: its last word stands, but all options that it ran with.
+  const auto known = std::find_if(notes.begin(), notes.end(), [&](const auto& earlier) {
+    return name == kOptionsThatRan ? earlier == note : earlier.first == name;
+  });
+  if (known == notes.end()) {
+    notes.push_back(std::move(note));
+  } else {
+    known->second = std::move(note.second);
+  }
 }
 
 Status RunControl::Iterate(const Eigen::VectorXd& x) { return BookAndCheck(x, true); }

@@ -47,6 +47,7 @@ class RunContext {
   /// Why Iterate, IterateOnTheWay or an evaluation said kStop.
   virtual StopReason stop_reason() const = 0;
   /// Something about the run that belongs beside its result: "spectral radius of I - A", "0.667".
+  /// Of one name the last value is kept (of `options that ran`, all).
   virtual void Note(const std::string& name, const std::string& value) = 0;
   /// Runs `work`, which only a report wants, with the clocks stopped.
   virtual void OffTheClock(const std::function<void()>& work) = 0;

@@ -235,6 +235,8 @@ TEST(FitCommand, RefusesFairingThatItCannotChoose) {
   refuse({"--fairing=risk"}, {"--fairing: risk needs --noise"});
   refuse({"--noise=0.1"}, {"--noise: found 0.1", "allowed: nothing, without"});
   refuse({"--fairing=gcv", "--noise=0.1"}, {"--noise: found 0.1", "allowed: nothing, without"});
+  refuse({"--fairing=risk", "--noise=1e-200"},
+         {"--fairing=risk is told of noise 1e-200", "allowed: ", " or more"});
   refuse({"--fairing=gcv", "--terms=interpolation/loss=huber"},
          {"--fairing=gcv cannot judge a loss"});
   refuse({"--fairing=gcv", "--parameter_kind=free"}, {"--fairing=gcv cannot judge free"});
