@@ -30,9 +30,10 @@ DEFINE_string(iterates, "", "JSON lines, control points and parameters at each i
 DEFINE_string(figure, "",
               "SVG of data, control polygon and curve, drawn by gnuplot; its script (.gp) and data "
               "(.dat) stay beside it.");
-DEFINE_string(curvature_figure, "",
-              "SVG of the curvature: combs and curvature over arc length of the fit and, where it "
-              "has a fairing term, of the same fit without.");
+DEFINE_string(
+    curvature_figure, "",
+    "SVG of the curvature: combs and curvature over arc length of the fit, of the curve that "
+    "interpolates the data, and of the same fit without its fairing terms.");
 
 namespace batten {
 namespace {
@@ -127,9 +128,10 @@ bool DrawCurvature(const Problem& problem, const RunResult& run, FileBatch* batc
     return Drew(NoFigure(stem, "curvature needs a curve in the plane or in space", batch),
                 "curvature_figure", FLAGS_curvature_figure, written, error);
   }
-  const std::vector<PlotPanel> panels = CurvaturePanels(FitBesideTheUnfaired(problem, run.x));
-  return Drew(DrawPlot(stem, panels, static_cast<int>(panels.size()), batch), "curvature_figure",
-              FLAGS_curvature_figure, written, error);
+  const std::vector<PlotPanel> panels = CurvaturePanels(FitBesideOthers(problem, run.x));
+  const int columns = panels.size() == 4 ? 2 : static_cast<int>(panels.size());
+  return Drew(DrawPlot(stem, panels, columns, batch), "curvature_figure", FLAGS_curvature_figure,
+              written, error);
 }
 
 /// All files or none: a full disk and an interrupt leave what was there before.

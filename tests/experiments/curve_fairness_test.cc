@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/curvature_figure.h"
 #include "tests/experiments/outlines.h"
 #include "tests/splines/example_splines.h"
 
@@ -316,24 +315,6 @@ TEST(CurvatureSamples, KnowArcLengthPlaceAndNormal) {
     EXPECT_NEAR(sample.normal[0], -sample.point[0] / radius, 1e-4);
     EXPECT_NEAR(sample.kappa, 1.0 / radius, 1e-4);
   }
-}
-
-TEST(CurvatureFigure, ShowsTheFitBesideTheOneWithoutFairing) {
-  const auto rhino = LoadCatalogueProblem("rhino");
-  FitSpec spec = rhino->curve_fit()->spec();
-  std::string error;
-  ASSERT_TRUE(ParseNameSpecList("interpolation,fairing/weight=1e-2", &spec.terms, &error));
-  const auto problem = MakeFitProblem(rhino->curve_fit()->data(), spec, &error);
-  ASSERT_NE(problem, nullptr) << error;
-  const std::vector<NamedCurve> curves =
-      FitBesideTheUnfaired(*problem, RunSolver(*problem, "banded_qr").x);
-  ASSERT_EQ(curves.size(), 2U);
-  EXPECT_LT(MeasureFairness(curves[0].curve).curvature_variation,
-            0.5 * MeasureFairness(curves[1].curve).curvature_variation);
-  const std::vector<PlotPanel> panels = CurvaturePanels(curves);
-  ASSERT_EQ(panels.size(), 3U);
-  EXPECT_EQ(panels[2].series.size(), 2U);
-  EXPECT_EQ(FitBesideTheUnfaired(*rhino, RunSolver(*rhino, "banded_qr").x).size(), 1U);
 }
 
 }  // namespace
