@@ -16,10 +16,14 @@ constexpr CurvatureMeasure kVariation = CurvatureMeasure::kVariation;
 
 /// What makes the integral, an inverse length to the power 1 or 3, a squared length as E is:
 /// `scale_free` the size of the data, `source` nothing in the user's units.
+double LengthUnit(const FitSetting& setting, const OptionValues& options) {
+  return options.Word("units") == "scale_free" ? setting.size : setting.scale;
+}
+constexpr int LengthPower(CurvatureMeasure measure) { return measure == kBending ? 3 : 5; }
+
 template <CurvatureMeasure kMeasure>
 double Factor(const FitSetting& setting, const OptionValues& options) {
-  const double unit = options.Word("units") == "scale_free" ? setting.size : setting.scale;
-  return std::pow(unit, kMeasure == kBending ? 3 : 5);
+  return std::pow(LengthUnit(setting, options), LengthPower(kMeasure));
 }
 
 /// What rounding of control points as large as the data leaves of the speed of a curve that crosses
@@ -121,6 +125,18 @@ template <CurvatureMeasure kMeasure>
 std::shared_ptr<const Sites> CurveFairingResidual<kMeasure>::MakeSites(
     const FitSetting& setting) const {
   return MakeGaussSites(setting, points, factor_);
+}
+
+ConstantSpeedFairing FairingOfConstantSpeed(const FitSetting& setting,
+                                            const OptionValues& options) {
+  const CurvatureMeasure measure = options.Word("measure") == "bending" ? kBending : kVariation;
+  ConstantSpeedFairing made;
+  made.fairing.name = "fairing";
+  made.fairing.options = {{"derivative", measure == kBending ? "2" : "3"},
+                          {"weight", NumberText(options.Real("weight"))}};
+  made.unit = LengthUnit(setting, options);
+  made.power = LengthPower(measure);
+  return made;
 }
 
 std::unique_ptr<Term> MakeCurveFairingTerm() { return std::make_unique<CurveFairingTerm>(); }

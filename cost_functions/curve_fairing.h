@@ -90,6 +90,17 @@ struct CurveFairingResidual {
   double least_squared_speed_;
 };
 
+/// On a curve of constant speed and length S, kappa^2 ds = |C''|^2 / S^3 dv, v the parameter on
+/// [0, 1], and |d(kappa b) / ds|^2 ds = |C'''|^2 / S^5 dv up to what bending adds: the term
+/// `fairing`, with the same weight, times (unit / S)^power.
+struct ConstantSpeedFairing {
+  NameSpec fairing;
+  double unit = 1.0;  ///< In the coordinates inside.
+  int power = 3;
+};
+/// `options`: of curve_fairing.
+ConstantSpeedFairing FairingOfConstantSpeed(const FitSetting& setting, const OptionValues& options);
+
 /// Options: measure bending|variation; points of the rule per span; units.
 std::unique_ptr<Term> MakeCurveFairingTerm();
 
