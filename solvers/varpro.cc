@@ -36,6 +36,9 @@ Status VarproSolver::Complete(Eigen::VectorXd* all) {
   linear_->Solve(&step_);
   if (!step_.allFinite()) return Status::kNonFinite;
   all->segment(view->sites().control_point_offset, step_.size()) += step_;
+  // A parameter past an end, where its share of |g| is 0, may be drawn back by the new curve.
+  Eigen::VectorXd seated = FreeVariablesOf(*objective(), *all);
+  if (objective()->Seat(&seated)) *all = objective()->Expand(seated);
   return Status::kOk;
 }
 
