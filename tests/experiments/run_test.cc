@@ -200,6 +200,11 @@ TEST(Run, SeesTheRateOfTheGeometricIteration) {
   EXPECT_LT(rate, 2.0 / 3.0 + 1e-6);
   EXPECT_GT(rate, 2.0 / 3.0 * (1.0 - 0.025));
   EXPECT_TRUE(std::isnan(RunSolver(*problem, "banded_qr").observed_rate));
+  // |g| does not go to 0 where an iteration goes to a limit of its own.
+  const auto rhino = LoadCatalogueProblem("rhino");
+  const RunResult own = RunSolver(*rhino, "extended_pia");
+  EXPECT_EQ(own.outcome.reason, StopReason::kNativeStop);
+  EXPECT_TRUE(std::isnan(own.observed_rate));
 }
 
 TEST(Run, SaysWhatItDidNotDo) {
