@@ -1,7 +1,5 @@
 #include "solvers/extended_pia.h"
 
-#include <limits>
-
 #include "solvers/paired_iteration.h"
 
 namespace batten {
@@ -11,27 +9,30 @@ SolverInfo ExtendedPiaSolver::ClassInfo() {
   info.name = "extended_pia";
   info.summary = "geometric iteration with each point's residual given to one control point";
   info.source = "Lin & Zhang, Computers & Graphics 35, 2011";
-  info.needs = {"compiled rows", "only the interpolation term without weights"};
+  info.needs = {"compiled rows", FurtherTerms::kNeeds};
   info.native_rule = NativeRule::kStep;
-  info.limit = "sum over the group of j of B_j(t_i) (Q_i - C(t_i)) = 0 for every control point j";
+  info.limit =
+      "sum over the group of j of B_j(t_i) (Q_i - C(t_i)) = (F P - f)_j for every control point j, "
+      "F "
+      "and f of the terms beside interpolation";
   return info;
 }
 
 std::string ExtendedPiaSolver::WhyUnsupported(const Objective& objective) const {
-  return WhyNotPlainInterpolation(objective, "extended_pia");
+  return FurtherTerms::WhyNot(objective, "extended_pia");
 }
 
 void ExtendedPiaSolver::Group() {
-  const BandedRows& rows = objective()->curve_view()->rows();
-  const int n = rows.shape().num_columns;
-  const int width = rows.shape().width;
-  member_of_row_.assign(static_cast<std::size_t>(rows.shape().num_rows), Member());
+  const int n = rows().shape().num_columns;
+  const int width = rows().shape().width;
+  member_of_row_.assign(static_cast<std::size_t>(rows().shape().num_rows), Member());
   std::vector<double> sums(static_cast<std::size_t>(n), 0.0);
+  if (!terms_.empty()) sums = terms_.RowSums();
   // Where the basis wraps onto itself, one control point has several entries: they add.
   std::vector<double> values(static_cast<std::size_t>(n), 0.0);
   std::size_t row = 0;
-  for (std::size_t b = 0; b < rows.num_blocks(); ++b) {
-    const RowBlock block = rows.block(b);
+  for (std::size_t b = 0; b < rows().num_blocks(); ++b) {
+    const RowBlock block = rows().block(b);
     for (int i = 0; i < block.num_rows; ++i, ++row) {
       Member& member = member_of_row_[row];
       member.share = -1.0;
@@ -52,16 +53,20 @@ void ExtendedPiaSolver::Group() {
   for (Member& member : member_of_row_) {
     member.share /= sums[static_cast<std::size_t>(member.control_point)];
   }
+  scale_ = Eigen::Map<const Eigen::ArrayXd>(sums.data(), n);
+  scale_ = (scale_ > 0.0).select(scale_.inverse(), 0.0);
 }
 
 std::optional<Outcome> ExtendedPiaSolver::DoStart(Eigen::VectorXd* /*x*/) {
   guard_.Reset();
-  first_move_ = -1.0;
+  own_limit_.Reset();
+  rows_ = &FurtherTerms::InterpolationRows(objective(), &own_rows_);
+  terms_ = FurtherTerms(objective());
   Group();
   context()->OffTheClock([this] {
     const double radius = SpectralRadius();
     context()->Note("spectral radius of the iteration", NumberText(radius));
-    // 1 where a control point has no group: it stays.
+    // 1 where a control point has no group and no term: it stays.
     if (radius > 1.0 + 1e-9) {
       WarnOfDivergence("the spectral radius of the iteration is " + NumberText(radius));
     }
@@ -70,43 +75,49 @@ std::optional<Outcome> ExtendedPiaSolver::DoStart(Eigen::VectorXd* /*x*/) {
 }
 
 Status ExtendedPiaSolver::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
-  CurveView& view = *objective()->curve_view();
-  const Status status = view.Residuals(x, &residuals_);
-  if (status != Status::kOk) return status;
+  if (!objective()->curve_view()->AllowProduct(x)) return Status::kStop;
+  const RowShape shape = rows().shape();
+  residuals_.resize(shape.num_rows, shape.dimension);
+  rows().Residuals(x.data(), residuals_.data());
+  if (!residuals_.allFinite()) return Status::kNonFinite;
   *g_of_x = x;
-  Eigen::Map<Points> points(g_of_x->data(), view.num_points(), view.dimension());
+  Eigen::Map<Points> points(g_of_x->data(), shape.num_columns, shape.dimension);
   for (std::size_t row = 0; row < member_of_row_.size(); ++row) {
     const Member& member = member_of_row_[row];
     points.row(member.control_point) +=
         member.share * residuals_.row(static_cast<Eigen::Index>(row));
   }
-  return Status::kOk;
+  if (terms_.empty()) return Status::kOk;
+  terms_.Pull(x.data(), &pull_);
+  points.array() += pull_.array().colwise() * scale_;
+  return points.allFinite() ? Status::kOk : Status::kNonFinite;
 }
 
 std::optional<Outcome> ExtendedPiaSolver::Inspect(const Eigen::VectorXd& x,
                                                   const Eigen::VectorXd& g_of_x) {
-  // |g| does not vanish at its limit: the race's rule, put to its own moves.
-  constexpr double kSmall = 1e-10;
   const double move = (g_of_x - x).norm();
-  const double rounding = std::numeric_limits<double>::epsilon() * x.norm();
-  if (first_move_ < 0.0) first_move_ = move;
-  if (move <= kSmall * first_move_ || move <= rounding) {
+  if (own_limit_.Reached(move, x)) {
     return Outcome{StopReason::kNativeStop,
-                   "it has reached its own limit, which is not the least-squares curve unless that "
-                   "meets all points"};
+                   terms_.empty()
+                       ? "it has reached its own limit, which is not the least-squares "
+                         "curve unless that meets all points"
+                       : "it has reached its own limit, which is not the minimum of E: at "
+                         "each control point the residuals of its group balance the pull "
+                         "of the further terms"};
   }
   return guard_.Check(move);
 }
 
 double ExtendedPiaSolver::SpectralRadius() const {
-  const BandedRows& rows = objective()->curve_view()->rows();
-  const int n = rows.shape().num_columns;
-  const int width = rows.shape().width;
+  const int n = rows().shape().num_columns;
+  const int width = rows().shape().width;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> pull(n, n);
+  if (!terms_.empty()) pull = scale_.matrix().asDiagonal() * terms_.ToSparse();
   const auto apply = [&](const Points& v) {
-    Points result = v;
+    Points result = v - pull * v;
     std::size_t row = 0;
-    for (std::size_t b = 0; b < rows.num_blocks(); ++b) {
-      const RowBlock block = rows.block(b);
+    for (std::size_t b = 0; b < rows().num_blocks(); ++b) {
+      const RowBlock block = rows().block(b);
       for (int i = 0; i < block.num_rows; ++i, ++row) {
         const Member& member = member_of_row_[row];
         for (int k = 0; k < width; ++k) {
@@ -122,13 +133,14 @@ double ExtendedPiaSolver::SpectralRadius() const {
 }
 
 std::vector<double> ExtendedPiaSolver::State() const {
-  std::vector<double> state = {first_move_};
+  std::vector<double> state;
+  own_limit_.AppendTo(&state);
   guard_.AppendTo(&state);
   return state;
 }
 
 void ExtendedPiaSolver::Restore(const std::vector<double>& state) {
-  first_move_ = state[0];
+  own_limit_.Restore(state.data());
   guard_.Restore(state.data() + 1);
 }
 

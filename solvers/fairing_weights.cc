@@ -3,12 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/further_terms.h"
+
 namespace batten {
 namespace {
 
-bool IsFairing(const Problem::TermInstance& term) {
-  return term.name.substr(0, term.name.find('/')) == "fairing";
-}
+bool IsFairing(const Problem::TermInstance& term) { return IsNamed(term, "fairing"); }
 
 NormalBand FairingBand(const Problem& problem, const NormalBand& all) {
   RowShape shape;
@@ -16,18 +16,7 @@ NormalBand FairingBand(const Problem& problem, const NormalBand& all) {
   shape.width = all.width();
   shape.dimension = all.dimension();
   shape.cyclic = all.cyclic();
-  NormalBand band(shape);
-  for (const Problem::TermInstance& term : problem.terms()) {
-    if (!IsFairing(term)) continue;
-    const NormalBand part = NormalBand::FromRows(*term.family->rows());
-    for (int j = 0; j < part.size(); ++j) {
-      for (int k = 0; k < part.width() && k < band.width(); ++k) {
-        band.band()[static_cast<std::size_t>(j) * band.width() + k] +=
-            part.band()[static_cast<std::size_t>(j) * part.width() + k];
-      }
-    }
-  }
-  return band;
+  return BandOfTerms(problem, shape, IsFairing);
 }
 
 }  // namespace

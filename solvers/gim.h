@@ -6,7 +6,8 @@
 namespace batten {
 
 /// Geometric iteration method (progressive-iterative approximation): P_j += Q - C at the parameter
-/// paired with j, as many control points as points. docs/solvers/gim.md.
+/// paired with j, less what further terms pull, as many control points as points.
+/// docs/solvers/gim.md.
 class GimSolver final : public PairedIteration {
  public:
   static SolverInfo ClassInfo();

@@ -9,12 +9,13 @@ SolverInfo LocalPiaSolver::ClassInfo() {
   info.name = "local_pia";
   info.summary = "geometric iteration of the points that are not met yet";
   info.source = "Lin, CAGD 27, 2010; Lin, CAGD 29, 2012";
-  info.needs = {"compiled rows", "only the interpolation term without weights",
-                "as many control points as points"};
+  info.needs = {"compiled rows", FurtherTerms::kNeeds, "as many control points as points"};
+  info.limit = kPairedLimit;
   info.native_rule = NativeRule::kStep;
   info.options = {OptionInfo::Real(
       "tolerance", 1e-12, 0.0, 1.0,
-      "distance, in longest sides of the data's box, from which on a point counts as met")};
+      "distance, in longest sides of the data's box, from which on a point counts as met, or with "
+      "further terms a move as none")};
   return info;
 }
 
@@ -35,7 +36,12 @@ void LocalPiaSolver::TurnIntoMoves(Points* residuals) const {
 
 std::optional<Outcome> LocalPiaSolver::Inspect(const Eigen::VectorXd& x,
                                                const Eigen::VectorXd& g_of_x) {
-  if (x == g_of_x) return Outcome{StopReason::kNativeStop, "every point is met to the tolerance"};
+  if (x == g_of_x) {
+    return Outcome{StopReason::kNativeStop,
+                   has_further_terms() ? "no control point moves by more than the tolerance: it "
+                                         "has reached its own limit, which is not the minimum of E"
+                                       : "every point is met to the tolerance"};
+  }
   return PairedIteration::Inspect(x, g_of_x);
 }
 

@@ -6,7 +6,7 @@
 namespace batten {
 
 /// Geometric iteration of the points that are not met yet: P_j += Q - C only where |Q - C| is above
-/// a tolerance. docs/solvers/local_pia.md.
+/// a tolerance; with further terms where its move is. docs/solvers/local_pia.md.
 class LocalPiaSolver final : public PairedIteration {
  public:
   static SolverInfo ClassInfo();

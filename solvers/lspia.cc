@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "problems/fit_problem.h"
@@ -139,7 +138,7 @@ std::optional<Outcome> LspiaSolver::ChooseStep(const Eigen::VectorXd& x) {
 std::optional<Outcome> LspiaSolver::DoStart(Eigen::VectorXd* x) {
   last_move_.resize(0);
   alternations_ = 0;
-  first_move_ = -1.0;
+  own_limit_.Reset();
   weighted_.reset();
   if (weighs_fairing()) WeighFairing();
   // Cauchy's steps change from one iteration to the next, and the longest move can come late.
@@ -174,16 +173,10 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
   constexpr int kPatience = 20;
   move_ = g_of_x - x;
   const double length = move_.norm();
-  if (weighted_.has_value()) {
-    // |g| does not vanish at its limit: the race's rule, put to its own moves.
-    constexpr double kSmall = 1e-10;
-    const double rounding = std::numeric_limits<double>::epsilon() * x.norm();
-    if (first_move_ < 0.0) first_move_ = length;
-    if (length <= kSmall * first_move_ || length <= rounding) {
-      return Outcome{StopReason::kNativeStop,
-                     "it has reached its own limit, which is not the minimum of E: fairing is "
-                     "weighed by control point"};
-    }
+  if (weighted_.has_value() && own_limit_.Reached(length, x)) {
+    return Outcome{StopReason::kNativeStop,
+                   "it has reached its own limit, which is not the minimum of E: fairing is "
+                   "weighed by control point"};
   }
   const bool as_long = last_move_.size() == move_.size() && length >= kSameLength * last_length_;
   // Hardly ever: moves shrink.
@@ -203,7 +196,7 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
 std::vector<double> LspiaSolver::State() const {
   std::vector<double> state(last_move_.data(), last_move_.data() + last_move_.size());
   state.push_back(alternations_);
-  state.push_back(first_move_);
+  own_limit_.AppendTo(&state);
   guard_.AppendTo(&state);
   return state;
 }
@@ -213,7 +206,7 @@ void LspiaSolver::Restore(const std::vector<double>& state) {
   last_move_ = Eigen::Map<const Eigen::VectorXd>(state.data(), size);
   last_length_ = last_move_.norm();
   alternations_ = static_cast<int>(state[static_cast<std::size_t>(size)]);
-  first_move_ = state[static_cast<std::size_t>(size) + 1];
+  own_limit_.Restore(state.data() + size + 1);
   guard_.Restore(state.data() + size + 2);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/fairing_weights.h"
+#include "solvers/own_limit.h"
 #include "solvers/solver_registry.h"
 #include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
@@ -42,9 +43,9 @@ class LspiaSolver final : public FixedPoint {
   int fairing_last_ = 0;
   std::vector<double> fairing_factors_;     // instead of these
   std::optional<FairingWeights> weighted_;  // none: all factors are 1
-  double first_move_ = -1.0;
-  Eigen::VectorXd step_;      // mu per variable; empty for cauchy
-  Eigen::VectorXd residual_;  // A'(Q - A P) at the last point mapped
+  OwnLimit own_limit_;                      // of weighted_
+  Eigen::VectorXd step_;                    // mu per variable; empty for cauchy
+  Eigen::VectorXd residual_;                // A'(Q - A P) at the last point mapped
   Eigen::VectorXd product_;
   Eigen::VectorXd move_;
   Eigen::VectorXd last_move_;

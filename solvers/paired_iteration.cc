@@ -12,9 +12,6 @@
 namespace batten {
 namespace {
 
-/// Without options.
-std::string NameOf(const std::string& term) { return term.substr(0, term.find('/')); }
-
 /// Indices of `values` in increasing order of value.
 std::vector<int> SortedOrder(const std::vector<double>& values) {
   std::vector<int> order(values.size());
@@ -73,25 +70,6 @@ std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
   return result;
 }
 
-std::string WhyNotPlainInterpolation(const Objective& objective, const std::string& solver_name) {
-  const Problem& problem = objective.problem();
-  // Linear ones neither: what says so for solvers that hold those would be wrong here.
-  if (problem.nonlinear_constraints() != nullptr) {
-    return solver_name + " takes no constraints; use augmented_lagrangian:lbfgs";
-  }
-  std::string why = WhyNoUnboundedCurveView(objective, solver_name);
-  if (!why.empty()) return why;
-  const CurveFit* fit = problem.curve_fit();
-  if (fit == nullptr || problem.terms().size() != 1 || problem.terms()[0].family->weight() != 1.0 ||
-      fit->data().weights.has_value() || NameOf(problem.terms()[0].name) != "interpolation") {
-    return solver_name +
-           " moves control points by residuals of the interpolation term alone, without weights; "
-           "use lspia";
-  }
-  if (!problem.elimination().trivial()) return solver_name + " takes no constraints; use lspia";
-  return "";
-}
-
 std::vector<double> ParametersByRow(const Problem& problem) {
   const Sites& sites = *problem.curve_fit()->setting().data;
   std::vector<double> parameters(static_cast<std::size_t>(sites.size));
@@ -124,7 +102,7 @@ double SpectralRadiusOf(const std::function<Points(const Points&)>& apply, int n
 
 std::string PairedIteration::WhyUnsupported(const Objective& objective) const {
   const std::string name = Info().name;
-  std::string why = WhyNotPlainInterpolation(objective, name);
+  std::string why = FurtherTerms::WhyNot(objective, name);
   if (!why.empty()) return why;
   const CurveFit& fit = *objective.problem().curve_fit();
   const auto m = std::to_string(fit.parameters().size());
@@ -136,9 +114,18 @@ std::string PairedIteration::WhyUnsupported(const Objective& objective) const {
 
 std::optional<Outcome> PairedIteration::DoStart(Eigen::VectorXd* /*x*/) {
   guard_.Reset();
+  own_limit_.Reset();
   const Problem& problem = objective()->problem();
-  rows_ = PairedRows(objective()->curve_view()->rows(),
+  std::optional<BandedRows> own;
+  rows_ = PairedRows(FurtherTerms::InterpolationRows(objective(), &own),
                      PairWithControlPoints(problem.curve_fit()->basis(), ParametersByRow(problem)));
+  terms_ = FurtherTerms(objective());
+  if (has_further_terms()) {
+    const std::vector<double> sums = terms_.RowSums();
+    scale_ = Eigen::Map<const Eigen::ArrayXd>(sums.data(), rows_.size());
+    // Rows of |B| sum to 1.
+    scale_ = (1.0 + scale_).inverse();
+  }
   if (std::optional<Outcome> outcome = Prepare()) return outcome;
   context()->OffTheClock([this] {
     const double radius = SpectralRadius();
@@ -154,6 +141,11 @@ std::optional<Outcome> PairedIteration::DoStart(Eigen::VectorXd* /*x*/) {
 Status PairedIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   if (!objective()->curve_view()->AllowProduct(x)) return Status::kStop;
   rows_.Residuals(x.data(), &moves_);
+  if (has_further_terms()) {
+    terms_.Pull(x.data(), &pull_);
+    moves_ += pull_;
+    moves_.array().colwise() *= scale_;
+  }
   if (!moves_.allFinite()) return Status::kNonFinite;
   TurnIntoMoves(&moves_);
   *g_of_x = x + Eigen::Map<const Eigen::VectorXd>(moves_.data(), x.size());
@@ -161,21 +153,38 @@ Status PairedIteration::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
 }
 
 /// Follows the Map of the same x.
-std::optional<Outcome> PairedIteration::Inspect(const Eigen::VectorXd& /*x*/,
+std::optional<Outcome> PairedIteration::Inspect(const Eigen::VectorXd& x,
                                                 const Eigen::VectorXd& /*g_of_x*/) {
-  return guard_.Check(moves_.norm());
+  const double move = moves_.norm();
+  if (has_further_terms() && own_limit_.Reached(move, x)) {
+    return Outcome{StopReason::kNativeStop,
+                   "it has reached its own limit, which is not the minimum of E: at each control "
+                   "point the residual balances the pull of the further terms"};
+  }
+  return guard_.Check(move);
 }
 
 std::vector<double> PairedIteration::State() const {
   std::vector<double> state;
+  own_limit_.AppendTo(&state);
   guard_.AppendTo(&state);
   return state;
 }
 
-void PairedIteration::Restore(const std::vector<double>& state) { guard_.Restore(state.data()); }
+void PairedIteration::Restore(const std::vector<double>& state) {
+  own_limit_.Restore(state.data());
+  guard_.Restore(state.data() + 1);
+}
+
+PairedIteration::SparseRowMajor PairedIteration::Matrix() const {
+  SparseRowMajor a = rows_.ToSparse();
+  if (!has_further_terms()) return a;
+  a += terms_.ToSparse();
+  return scale_.matrix().asDiagonal() * a;
+}
 
 double PairedIteration::SpectralRadius() const {
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> a = rows_.ToSparse();
+  const SparseRowMajor a = Matrix();
   const auto apply = [&](const Points& v) {
     Points moved = -(a * v);
     TurnIntoMovesLinearly(&moved);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/further_terms.h"
+#include "solvers/own_limit.h"
 #include "solvers/paired_rows.h"
 #include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
@@ -13,7 +15,10 @@
 namespace batten {
 
 /// Geometric iterations that move control points by residuals paired with them, as many as points:
-/// P += M R, R_j = Q - C at the parameter paired with j. A below has its rows in that order.
+/// P += M D (Q + f - (B + F) P), B the square collocation matrix and Q the data, their rows in the
+/// order of the pairs, F and f of FurtherTerms, D diagonal, D_jj = 1 / (1 + sum_k |F_jk|), so that
+/// no row sum of |D (B + F)| is above 1. Without further terms F and f are 0 and D is 1: P_j moves
+/// by Q - C at the parameter paired with j. A below is D (B + F).
 class PairedIteration : public FixedPoint {
  public:
   std::string WhyUnsupported(const Objective& objective) const override;
@@ -22,9 +27,11 @@ class PairedIteration : public FixedPoint {
   void Restore(const std::vector<double>& state) override;
 
  protected:
+  using SparseRowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
   /// Set-up on the clock, after pairing; may note what it found.
   virtual std::optional<Outcome> Prepare() { return std::nullopt; }
-  /// R, n x d, becomes the moves M R.
+  /// R = D (Q + f - (B + F) P), n x d, becomes the moves M R.
   virtual void TurnIntoMoves(Points* residuals) const = 0;
   /// What of TurnIntoMoves is linear, for the spectral radius of I - M A.
   virtual void TurnIntoMovesLinearly(Points* residuals) const { TurnIntoMoves(residuals); }
@@ -34,14 +41,19 @@ class PairedIteration : public FixedPoint {
   std::optional<Outcome> Inspect(const Eigen::VectorXd& x, const Eigen::VectorXd& g_of_x) override;
 
   /// A.
-  const PairedRows& rows() const { return rows_; }
+  SparseRowMajor Matrix() const;
+  bool has_further_terms() const { return !terms_.empty(); }
 
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* x) final;
   double SpectralRadius() const;
 
-  PairedRows rows_;
+  PairedRows rows_;  // B, Q
+  FurtherTerms terms_;
+  Eigen::ArrayXd scale_;  // diagonal of D; none without further terms
   Points moves_;
+  Points pull_;
+  OwnLimit own_limit_;  // of those with further terms
   StallGuard guard_;
 };
 
@@ -51,9 +63,10 @@ class PairedIteration : public FixedPoint {
 std::vector<int> PairWithControlPoints(const BsplineBasis& basis,
                                        const std::vector<double>& parameters_by_row);
 
-/// Why `objective` is not one interpolation term without weights, constraints or bounds, whose
-/// residuals are distances that can be given to control points; empty if it is.
-std::string WhyNotPlainInterpolation(const Objective& objective, const std::string& solver_name);
+/// SolverInfo::limit of these methods.
+inline constexpr char kPairedLimit[] =
+    "(Q - B P)_j = (F P - f)_j for every control point j, F and f of the terms beside "
+    "interpolation; without these that is the minimum";
 
 /// Parameters in the order of the rows.
 std::vector<double> ParametersByRow(const Problem& problem);

@@ -76,8 +76,8 @@ SolverInfo PreconditionedPiaSolver::ClassInfo() {
   info.summary = "geometric iteration with a banded approximate inverse of A";
   info.source =
       "Liu, Han & Li, Mathematics 8:1503, 2020; Grote & Huckle, SIAM J. Sci. Comput. 18, 1997";
-  info.needs = {"compiled rows", "only the interpolation term without weights",
-                "as many control points as points"};
+  info.needs = {"compiled rows", FurtherTerms::kNeeds, "as many control points as points"};
+  info.limit = kPairedLimit;
   info.native_rule = NativeRule::kStep;
   info.options = {OptionInfo::Integer("half_width", 3, 0, 50,
                                       "entries of the inverse on each side of its diagonal")};
@@ -88,7 +88,7 @@ PreconditionedPiaSolver::PreconditionedPiaSolver(const OptionValues& options)
     : half_width_(options.Integer("half_width")) {}
 
 std::optional<Outcome> PreconditionedPiaSolver::Prepare() {
-  const SparseRowMajor a = rows().ToSparse();
+  const SparseRowMajor a = Matrix();
   const auto n = static_cast<int>(a.rows());
   std::vector<Eigen::Triplet<double>> entries;
   double norm = 0.0;

@@ -14,8 +14,8 @@ SolverInfo WeightedPiaSolver::ClassInfo() {
   info.name = "weighted_pia";
   info.summary = "geometric iteration with the weight that makes it fastest";
   info.source = "Lu, CAGD 27, 2010";
-  info.needs = {"compiled rows", "only the interpolation term without weights",
-                "as many control points as points"};
+  info.needs = {"compiled rows", FurtherTerms::kNeeds, "as many control points as points"};
+  info.limit = kPairedLimit;
   info.native_rule = NativeRule::kStep;
   info.options = {OptionInfo::Real("w", 0.0, 0.0, 2.0,
                                    "weight; 0: 2 / (1 + smallest eigenvalue of A), the best one")};
@@ -30,7 +30,8 @@ std::optional<Outcome> WeightedPiaSolver::Prepare() {
     return std::nullopt;
   }
   const double smallest = SmallestEigenvalue();
-  // At 2 an eigenvalue of 1, which A always has (its rows sum to 1), would turn about for ever.
+  // At 2 an eigenvalue of 1, which A has without further terms (its rows sum to 1), would turn
+  // about for ever.
   constexpr double kLargestWeight = 1.999;
   weight_ = std::min(2.0 / (1.0 + smallest), kLargestWeight);
   context()->Note("smallest eigenvalue of A", NumberText(smallest));
@@ -41,7 +42,7 @@ std::optional<Outcome> WeightedPiaSolver::Prepare() {
 /// In size. A has positive eigenvalues where the basis is totally positive and points are paired in
 /// order; 0 if A is singular to working precision.
 double WeightedPiaSolver::SmallestEigenvalue() const {
-  const Eigen::SparseMatrix<double> a = rows().ToSparse();
+  const Eigen::SparseMatrix<double> a = Matrix();
   constexpr int kLargestDense = 100;
   if (a.rows() <= kLargestDense) return EigenvalueSizes(Eigen::MatrixXd(a)).minCoeff();
   // Inverse iteration. Close eigenvalues leave its vector undecided but hardly its growth.

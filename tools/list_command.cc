@@ -163,7 +163,7 @@ std::string SolversText() {
     for (const std::string& need : info.needs) needs += (needs.empty() ? "needs " : ", ") + need;
     if (!needs.empty()) text += std::string(kIndent, ' ') + Wrapped(needs, kIndent, kIndent);
     if (!info.limit.empty()) {
-      const std::string limit = "does not go to the minimum of E, but to " + info.limit;
+      const std::string limit = "does not always go to the minimum of E, but to " + info.limit;
       text += std::string(kIndent, ' ') + Wrapped(limit, kIndent, kIndent);
     }
     text += OptionsText(info.options);

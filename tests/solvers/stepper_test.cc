@@ -59,6 +59,10 @@ std::vector<std::unique_ptr<Problem>> ProblemsFor(const std::string& name) {
   std::vector<std::unique_ptr<Problem>> problems;
   problems.push_back(MakeCirculantFit(30, 1));
   problems.push_back(InterpolationProblems()[5].make());
+  // Methods that pair points with control points end by themselves here.
+  problems.push_back(
+      MakeFit(WithoutWeights(MakeNoisyLoop(30, 2, 71)),
+              MakeSpec(3, true, 30, "interpolation,fairing/derivative=1/weight=1e-3")));
   for (const ContractProblem& row : FreeProblems()) problems.push_back(row.make());
   const auto is_unsupported = [&name](const std::unique_ptr<Problem>& problem) {
     return !WhyUnsupported(*problem, name).empty();

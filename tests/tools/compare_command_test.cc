@@ -165,6 +165,33 @@ TEST_F(CompareCommand, TakesProblemFiles) {
   ExpectRefused(Compare({"--problems=" + bad}), {"--problems: ", "control_points"});
 }
 
+TEST_F(CompareCommand, ShowsALimitThatIsNotTheMinimumAsOne) {
+  const std::string problem =
+      folder_.Write("faired.json", R"({"name": "faired", "data": ")" BATTEN_SOURCE_DIR
+                                   R"(/data/animals/rhino_100.csv", "spline": {"closed": true,)"
+                                   R"( "control_points": 100},)"
+                                   R"( "terms": ["interpolation", "fairing/weight=1e-7"]})");
+  const std::vector<std::string> flags = {
+      "--problems=" + problem, "--solvers=gim,extended_pia,lspia,banded_qr", "--nofigures"};
+  // No claim fails, and what does not claim the minimum disagrees with nothing.
+  const Ended ended = Compare(flags);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const auto table = json::parse(ReadFile(out_ + "/table.json"));
+  EXPECT_TRUE(table["disagreements"].empty());
+  const auto& rows = table["rows"];
+  for (const std::size_t k : {0U, 1U}) {
+    EXPECT_EQ(rows[k]["stop"], "native_stop");
+    EXPECT_EQ(rows[k]["verified"], true);
+    EXPECT_TRUE(rows[k]["observed_rate"].is_null());
+    EXPECT_GT(rows[k]["energy"].get<double>(), 1.005 * rows[3]["energy"].get<double>());
+    EXPECT_GT(rows[k]["distance_to_direct"].get<double>(), 1e-4);
+  }
+  EXPECT_LT(rows[2]["distance_to_direct"].get<double>(), 1e-8);
+  std::vector<std::string> strict = flags;
+  strict.push_back("--strict");
+  EXPECT_EQ(Compare(strict).status, 1);
+}
+
 TEST_F(CompareCommand, RefusesBadDataBeforeItRunsAnything) {
   const auto refuse = [&](const std::string& points, const std::vector<std::string>& parts) {
     folder_.Write("bad.csv", points);
