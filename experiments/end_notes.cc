@@ -17,10 +17,15 @@ void NoteDistanceFromMinimum(const Problem& problem, RunResult* run) {
   if (!direct.known() || !direct.unique()) return;
   const double distance = direct.Distance(run->x);
   if (!(distance > kFar)) return;
-  run->notes.emplace_back("far from the minimum",
-                          "control points are up to " + ShortNumber(distance, 2) +
-                              " of the data's size away from it, though |g| is small: E is "
-                              "ill-conditioned; banded_qr keeps more digits");
+  // The native rule of steps does not look at |g|.
+  const std::string why =
+      run->outcome.reason == StopReason::kStepSmall
+          ? ", though they hardly move: E is ill-conditioned, or the method goes to a limit of its "
+            "own; banded_qr goes to the minimum"
+          : ", though |g| is small: E is ill-conditioned; banded_qr keeps more digits";
+  run->notes.emplace_back("far from the minimum", "control points are up to " +
+                                                      ShortNumber(distance, 2) +
+                                                      " of the data's size away from it" + why);
 }
 
 void NoteErrorsOfRules(const Problem& problem, const CurveFairness& fairness, RunResult* run) {

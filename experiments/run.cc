@@ -26,8 +26,8 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 double ObservedRate(const RunResult& result) {
   constexpr double kAboveFloor = 100.0;
   constexpr int kFewest = 6;
-  // What ends by itself at such a limit is still on the way to it in the iterations looked at.
-  const double stands_still = result.outcome.reason == StopReason::kNativeStop ? 1e-3 : 1e-9;
+  constexpr double kStandsStill = 1e-9;
+  constexpr double kComesToAStand = 1e-3;
   int last = -1;
   for (const TraceRow& row : result.trace) {
     if (!(row.gradient_norm > kAboveFloor * result.gradient_floor)) break;
@@ -37,7 +37,14 @@ double ObservedRate(const RunResult& result) {
   const int first = last - last / 3;
   const double ratio = result.trace[static_cast<std::size_t>(last)].gradient_norm /
                        result.trace[static_cast<std::size_t>(first)].gradient_norm;
-  if (std::abs(ratio - 1.0) < stands_still) return std::numeric_limits<double>::quiet_NaN();
+  if (std::abs(ratio - 1.0) < kStandsStill) return std::numeric_limits<double>::quiet_NaN();
+  // What ends by itself at such a limit may still have been on its way in these iterations.
+  const double last_factor = result.trace[static_cast<std::size_t>(last)].gradient_norm /
+                             result.trace[static_cast<std::size_t>(last) - 1].gradient_norm;
+  if (result.outcome.reason == StopReason::kNativeStop &&
+      std::abs(last_factor - 1.0) < kComesToAStand) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   return std::pow(ratio, 1.0 / (last - first));
 }
 

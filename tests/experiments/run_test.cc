@@ -205,6 +205,25 @@ TEST(Run, SeesTheRateOfTheGeometricIteration) {
   const RunResult own = RunSolver(*rhino, "extended_pia");
   EXPECT_EQ(own.outcome.reason, StopReason::kNativeStop);
   EXPECT_TRUE(std::isnan(own.observed_rate));
+  // Also where |g| has fallen far until then.
+  const auto light = MakeFileFit("animals/rhino_100.csv",
+                                 MakeSpec(3, true, 100, "interpolation,fairing/weight=1e-13"));
+  const RunResult gim = RunSolver(*light, "gim");
+  EXPECT_EQ(gim.outcome.reason, StopReason::kNativeStop);
+  EXPECT_LT(gim.gradient_norm, 1e-3 * gim.start_gradient_norm);
+  EXPECT_TRUE(std::isnan(gim.observed_rate));
+}
+
+TEST(Run, SaysThatSmallStepsMayLeadToALimitOfTheirOwn) {
+  const auto rhino = LoadCatalogueProblem("rhino");
+  RunSpec spec;
+  spec.mode = Mode::kNative;
+  RunResult run = RunSolver(*rhino, "extended_pia", spec);
+  EXPECT_EQ(run.outcome.reason, StopReason::kStepSmall);
+  NoteDistanceFromMinimum(*rhino, &run);
+  ASSERT_FALSE(run.notes.empty());
+  EXPECT_EQ(run.notes.back().first, "far from the minimum");
+  EXPECT_THAT(run.notes.back().second, ::testing::HasSubstr("hardly move"));
 }
 
 TEST(Run, SaysWhatItDidNotDo) {
