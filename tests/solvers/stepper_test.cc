@@ -54,15 +54,19 @@ std::vector<std::string> StepperNames() {
   return names;
 }
 
+/// Methods that pair points with control points end by themselves here.
+std::unique_ptr<Problem> FairedInterpolation() {
+  FitSpec spec = MakeSpec(3, true, 30, "interpolation,fairing/derivative=1/weight=1e-3");
+  spec.knots = KnotRule::kAveraged;
+  return MakeFit(WithoutWeights(MakeNoisyLoop(30, 2, 71)), spec);
+}
+
 /// The problems of these tests that a stepper takes: one at least.
 std::vector<std::unique_ptr<Problem>> ProblemsFor(const std::string& name) {
   std::vector<std::unique_ptr<Problem>> problems;
   problems.push_back(MakeCirculantFit(30, 1));
   problems.push_back(InterpolationProblems()[5].make());
-  // Methods that pair points with control points end by themselves here.
-  problems.push_back(
-      MakeFit(WithoutWeights(MakeNoisyLoop(30, 2, 71)),
-              MakeSpec(3, true, 30, "interpolation,fairing/derivative=1/weight=1e-3")));
+  problems.push_back(FairedInterpolation());
   for (const ContractProblem& row : FreeProblems()) problems.push_back(row.make());
   const auto is_unsupported = [&name](const std::unique_ptr<Problem>& problem) {
     return !WhyUnsupported(*problem, name).empty();
@@ -101,6 +105,20 @@ void ExpectResumes(const Problem& problem, const std::string& name, int before, 
 TEST_P(EveryStepper, GoesOnFromItsStateAsIfItHadNotBeenLeft) {
   for (const auto& problem : ProblemsFor(GetParam())) {
     for (const int before : {0, 1, 4, 17}) ExpectResumes(*problem, GetParam(), before, 40);
+  }
+}
+
+TEST(Stepper, EndsAtALimitOfItsOwnAsIfItHadNotBeenLeft) {
+  const auto problem = FairedInterpolation();
+  for (const char* name : {"gim", "weighted_pia", "local_pia", "preconditioned_pia", "extended_pia",
+                           "lspia/fairing_factor=3"}) {
+    SCOPED_TRACE(name);
+    SteppedRun run(*problem, name, StartOf(*problem));
+    int total = 1;
+    while (run.Step()) ASSERT_LT(++total, 2000);
+    // Shorter moves than at the start are behind it by then.
+    ASSERT_GT(total, 3);
+    ExpectResumes(*problem, name, total / 2, total);
   }
 }
 
