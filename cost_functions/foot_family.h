@@ -120,7 +120,12 @@ class FootFamily final : public BlockFamily {
       by_t[r] = results[r].slope.a;
       squared_speed += by_t[r] * by_t[r];
     }
-    const bool follows = FootFollows(*setting_.basis, block.place, squared_speed, curvature);
+    double largest = 0.0;
+    for (int v = 0; v < local; ++v) {
+      largest = std::max(largest, std::abs(all[kernel.Offset(block, v)]));
+    }
+    const bool follows =
+        FootFollows(*setting_.basis, block.place, squared_speed, curvature, largest);
     for (int v = 0; v < local; ++v) {
       dt[v] = follows ? -dt[v] / curvature : 0.0;
       for (int r = 0; r < k; ++r) jacobian[r * local + v] += by_t[r] * dt[v];

@@ -1,5 +1,7 @@
 #include "cost_functions/foot_feet.h"
 
+#include <limits>
+
 #include "splines/closest_point.h"
 
 namespace batten {
@@ -17,8 +19,13 @@ void FindFeet(const BsplineBasis& basis, int dimension, int control_point_offset
 }
 
 bool FootFollows(const BsplineBasis& basis, const CurvePlace& place, double squared_speed,
-                 double curvature) {
+                 double curvature, double largest) {
   if (!place.moves) return false;
+  // Where control points differ by rounding alone there is no direction, and all of it is a foot.
+  constexpr double kRoundings = 16.0 * std::numeric_limits<double>::epsilon();
+  const double length = basis.knots()[place.span + 1] - basis.knots()[place.span];
+  const double noise = kRoundings * basis.degree() * largest / length;
+  if (!(squared_speed > noise * noise)) return false;
   // At a corner, a knot where the curve is only continuous, a foot mostly stays.
   if (basis.knots()[place.span] == place.t) {
     int multiplicity = 1;

@@ -12,9 +12,10 @@ void FindFeet(const BsplineBasis& basis, int dimension, int control_point_offset
               const Points& points, Eigen::VectorXd* all);
 
 /// Whether a foot at `place` moves as the control points do, from |dr/dt|^2 and the second
-/// derivative of |r|^2 / 2 in t there.
+/// derivative of |r|^2 / 2 in t there. `largest`: coordinate of the span's control points in
+/// absolute value.
 bool FootFollows(const BsplineBasis& basis, const CurvePlace& place, double squared_speed,
-                 double curvature);
+                 double curvature, double largest);
 
 }  // namespace batten
 

@@ -244,6 +244,28 @@ StopReason RunControl::CheckStop(const TraceRow& row) {
 StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd& x) {
   if (rule_ == NativeRule::kDirect) return StopReason::kNotRun;
   if (!is_held_) return CheckLimit();
+  const StopReason reason = ConvergedReason(row, x);
+  // Steps that are small are so whatever g is.
+  const bool is_by_gradient = reason != StopReason::kNotRun && reason != StopReason::kStepSmall;
+  const bool is_converged = reason != StopReason::kNotRun && !(is_by_gradient && IsDrawnBack(x));
+  return is_converged ? reason : CheckLimit();
+}
+
+/// Parameters past an end have no share in |g|, though E may fall where they move back.
+bool RunControl::IsDrawnBack(const Eigen::VectorXd& x) {
+  Eigen::VectorXd seated = x;
+  if (!reporter_.Seat(&seated)) return false;
+  double energy = 0.0, violation = 0.0;
+  Eigen::VectorXd gradient;
+  const double norm = Evaluate(seated, &energy, &gradient, &violation) * problem_.units().gradient;
+  const double small = spec_.mode == Mode::kRace
+                           ? spec_.gradient_tolerance * result_->start_gradient_norm
+                           : spec_.native_gradient;
+  return !(norm <= std::max(small, result_->gradient_floor));
+}
+
+/// kNotRun: it has not converged.
+StopReason RunControl::ConvergedReason(const TraceRow& row, const Eigen::VectorXd& x) {
   if (spec_.mode == Mode::kRace) {
     if (row.gradient_norm <= spec_.gradient_tolerance * result_->start_gradient_norm) {
       return StopReason::kGradientSmall;
@@ -259,7 +281,7 @@ StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd
     result_->gradient_floor = reporter_.GradientRoundingFloor(x) * problem_.units().gradient;
     if (row.gradient_norm <= result_->gradient_floor) return StopReason::kRoundingFloor;
   }
-  return CheckLimit();
+  return StopReason::kNotRun;
 }
 
 StopReason RunControl::CheckLimit() const {

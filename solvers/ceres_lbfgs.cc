@@ -151,10 +151,15 @@ Outcome CeresLbfgsSolver::MinimizeObjective(Objective* objective, RunContext* co
   SetOptions(&ceres_options);
   LeaveStoppingToRunControl(&booker, &ceres_options);
   ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(ceres_options, problem, state.data(), &summary);
-  context->Note(kOptionsThatRan, RanWith(summary));
-  const Status status = booker.Finish(summary.IsSolutionUsable(), x);
-  if (stopped || status != Status::kOk) return {context->stop_reason(), ""};
+  do {
+    booker.GoOnFrom(&state);
+    ceres::Solve(ceres_options, problem, state.data(), &summary);
+    context->Note(kOptionsThatRan, RanWith(summary));
+    const Status status = booker.Finish(summary.IsSolutionUsable(), x);
+    if (stopped || status != Status::kOk) return {context->stop_reason(), ""};
+    // Of parameters past an end Ceres sees no slope: where E draws them back it goes on from there,
+    // unless it has gone to and fro at one E.
+  } while (summary.final_cost < summary.initial_cost && objective->Seat(&state));
   return OwnEnd(summary);
 }
 
