@@ -1,9 +1,10 @@
 // Free parameters: time of each method from the same starts to a gap of 1e-6 to the minimum of the
 // basin it ends in, beside ours in the pairs of runs that end in one basin: from starts around the
-// best minimum, where most runs share their basin, and from circles, where few do. Prints a
-// Markdown page.
-//   free_race_benchmark [--starts=20] [--seconds=0.4]   starts per outline, most seconds per run
-// At the defaults it is done in less than half an hour.
+// best minimum, where most runs share their basin, of short outlines, long ones and open curves;
+// and from circles, where few do. Prints a Markdown page.
+//   free_race_benchmark [--starts=20] [--seconds=0.4] [--table=NAME]
+// starts per curve, most seconds per run (five times as many for long outlines), and one of the
+// tables near, long, open, circle instead of all, which take about 50 minutes.
 
 #include <lbfgs.h>
 
@@ -139,50 +140,86 @@ Arrival RunOnce(const Problem& problem, const std::string& solver, double most_s
   return arrival;
 }
 
-/// Closed outlines in the plane of at most so many points: 300 runs of a method on longer ones
-/// would take hours, and the longer animals are these again.
-std::vector<std::string> Outlines() {
-  constexpr double kMostPoints = 200.0;
+enum class CurveKind { kShort, kLong, kOpen };
+
+/// Files of data/: closed outlines in the plane of up to 200 points, of up to 4,000, and open
+/// curves of up to 400 in any dimension. 20 runs of every method on longer ones would take hours.
+std::vector<std::string> CurveFiles(CurveKind kind) {
+  constexpr double kShort = 200.0, kLong = 4000.0, kOpen = 400.0;
   std::ifstream file(DataRoot() + "/data/manifest.csv");
   std::stringstream text;
   text << file.rdbuf();
   CsvTable manifest;
   std::string error;
   if (!CsvTable::FromCsv(text.str(), &manifest, &error)) Fail("data/manifest.csv: " + error);
-  const CsvTable closed = manifest.Where("kind", "closed").Where("dim", "2");
-  std::vector<std::string> outlines;
-  for (std::size_t row = 0; row < closed.num_rows(); ++row) {
-    if (closed.Number(row, "points") <= kMostPoints) outlines.push_back(closed.Text(row, "file"));
+  const bool is_open = kind == CurveKind::kOpen;
+  CsvTable rows = manifest.Where("kind", is_open ? "open" : "closed");
+  if (!is_open) rows = rows.Where("dim", "2");
+  std::vector<std::string> files;
+  for (std::size_t row = 0; row < rows.num_rows(); ++row) {
+    const double points = rows.Number(row, "points");
+    const bool is_in = is_open                    ? points <= kOpen
+                       : kind == CurveKind::kLong ? points > kShort && points <= kLong
+                                                  : points <= kShort;
+    if (is_in) files.push_back(rows.Text(row, "file"));
   }
-  return outlines;
+  return files;
 }
 
 /// What one table is of.
 struct RaceSpec {
-  int control_points = 0;
-  int starts = 20;       // per outline
-  double seconds = 0.4;  // most per run
+  std::string name;
+  std::string title;
+  CurveKind curves = CurveKind::kShort;
+  int control_points = 8;
   /// Disturbance of the best minimum that is known, in parts of its radius; 0: of a circle.
-  double near = 0.0;
+  double near = 0.05;
+  double slower = 1.0;  ///< Factor of the most seconds per run.
+  std::vector<std::string> solvers;
 };
 
-std::unique_ptr<Problem> OutlineFit(const std::string& outline, int control_points) {
+/// What the command line says.
+struct RaceFlags {
+  int starts = 20;  // per curve
+  double seconds = 0.4;
+  std::string table;  // empty: all
+};
+
+std::unique_ptr<Problem> CurveFitOf(const std::string& file, CurveKind kind, int control_points) {
   std::string error;
-  std::optional<DataSet> data = ReadDataSet(DataRoot() + "/data/" + outline, &error);
+  std::optional<DataSet> data = ReadDataSet(DataRoot() + "/data/" + file, &error);
   if (!data) Fail(error);
   FitSpec spec;
-  spec.closed = true;
+  spec.closed = kind != CurveKind::kOpen;
   spec.control_points = control_points;
   spec.parameter_kind = ParameterKind::kFree;
-  spec.start = "circle";
+  if (spec.closed) {
+    spec.start = "circle";
+  } else {
+    spec.parameters = Parameterization::kChordLength;
+  }
   std::unique_ptr<Problem> problem = MakeFitProblem(std::move(*data), spec, &error);
-  if (problem == nullptr) Fail(outline + ": " + error);
+  if (problem == nullptr) Fail(file + ": " + error);
   return problem;
 }
 
-std::unique_ptr<Problem> DisturbedCircle(const Problem& problem, int k) {
+std::unique_ptr<Problem> Disturbed(const Problem& problem, const Points& control_points,
+                                   double disturbance, int k) {
   std::string error;
-  auto from = FromDisturbedCircle(problem, 0.3, 1, k, &error);
+  auto from = FromDisturbed(problem, control_points, disturbance, 1, k, &error);
+  if (from == nullptr) Fail(error);
+  return from;
+}
+
+/// From a circle, an open curve from points on the polyline through the data.
+std::unique_ptr<Problem> DisturbedFarStart(const Problem& problem, int k) {
+  constexpr double kOfCircle = 0.3, kOfData = 0.1;
+  const CurveFit& fit = *problem.curve_fit();
+  if (!fit.spec().closed) {
+    return Disturbed(problem, fit.ControlPoints(problem.start()), kOfData, k);
+  }
+  std::string error;
+  auto from = FromDisturbedCircle(problem, kOfCircle, 1, k, &error);
   if (from == nullptr) Fail(error);
   return from;
 }
@@ -195,14 +232,14 @@ int NumFreeLoops(const CurveFit& fit, const Points& control_points) {
   return ShapeBesideData(fit, curve, feet)->num_free_loops;
 }
 
-/// Control points of the lowest minimum that is found from a number of disturbed circles, of those
+/// Control points of the lowest minimum that is found from a number of far starts, of those
 /// without loops if there are any: around a loop that no data hold a disturbance leads anywhere.
 Points BestMinimum(const Problem& problem) {
   constexpr int kTries = 20;
   BasinEnd best;
   bool best_has_loops = true;
   for (int k = 0; k < kTries; ++k) {
-    const Arrival arrival = RunOnce(*DisturbedCircle(problem, k), "foot_newton", 1.0);
+    const Arrival arrival = RunOnce(*DisturbedFarStart(problem, k), "foot_newton", 1.0);
     if (!arrival.basin.polished) continue;
     const Points& found = arrival.basin.control_points;
     const bool has_loops = NumFreeLoops(*problem.curve_fit(), found) > 0;
@@ -216,49 +253,78 @@ Points BestMinimum(const Problem& problem) {
   return best.control_points;
 }
 
-/// All problems of a table, `starts` of each outline one after the other.
-std::vector<std::unique_ptr<Problem>> Starts(const RaceSpec& race) {
+/// All problems of a table, `count` of each curve one after the other.
+std::vector<std::unique_ptr<Problem>> Starts(const RaceSpec& race, int count) {
   std::vector<std::unique_ptr<Problem>> starts;
-  for (const std::string& outline : Outlines()) {
-    const std::unique_ptr<Problem> problem = OutlineFit(outline, race.control_points);
+  for (const std::string& file : CurveFiles(race.curves)) {
+    const std::unique_ptr<Problem> problem = CurveFitOf(file, race.curves, race.control_points);
     const Points minimum = race.near > 0.0 ? BestMinimum(*problem) : Points();
-    for (int k = 0; k < race.starts; ++k) {
-      std::string error;
-      starts.push_back(race.near > 0.0 ? FromDisturbed(*problem, minimum, race.near, 1, k, &error)
-                                       : DisturbedCircle(*problem, k));
-      if (starts.back() == nullptr) Fail(error);
+    for (int k = 0; k < count; ++k) {
+      starts.push_back(race.near > 0.0 ? Disturbed(*problem, minimum, race.near, k)
+                                       : DisturbedFarStart(*problem, k));
     }
   }
   return starts;
 }
 
-void Race(const RaceSpec& race) {
-  // Ours first: the others are held against these.
-  const std::vector<std::string> ours = {"foot_newton", "newton"};
-  const std::vector<std::string> solvers = {"foot_newton",  "newton",
-                                            "lm_schur",     "varpro",
-                                            "sdm",          "tdm",
-                                            "anderson:sdm", "anderson/window=3:pdm",
-                                            "anderson:pdm", "anderson/window=10:pdm",
-                                            "lbfgs",        "ceres_lbfgs",
-                                            kLibLbfgs,      "ceres_lm"};
-  const std::string from = race.near > 0.0 ? "best minimum" : "circle";
-  std::printf("\n## From a disturbed %s, %d control points\n\n", from.c_str(), race.control_points);
-  PrintHead(ours);
-  const std::vector<std::unique_ptr<Problem>> starts = Starts(race);
+/// The tables. Ours are first among the solvers: the others are held against these.
+const std::vector<std::string> kOurs = {"foot_newton", "newton"};
+std::vector<RaceSpec> Races() {
+  const std::vector<std::string> all = {"foot_newton",
+                                        "newton",
+                                        "lm_schur",
+                                        "varpro",
+                                        "sdm",
+                                        "tdm",
+                                        "anderson:sdm",
+                                        "anderson/window=3:pdm",
+                                        "anderson:pdm",
+                                        "anderson/window=10:pdm",
+                                        "anderson/window=20:pdm",
+                                        "lbfgs",
+                                        "ceres_lbfgs",
+                                        kLibLbfgs,
+                                        "ceres_lm"};
+  const std::vector<std::string> peers = {"foot_newton",
+                                          "newton",
+                                          "lm_schur",
+                                          "anderson:pdm",
+                                          "anderson/window=10:pdm",
+                                          "anderson/window=20:pdm",
+                                          "lbfgs",
+                                          "ceres_lbfgs",
+                                          kLibLbfgs,
+                                          "ceres_lm"};
+  const std::string near = "From a disturbed best minimum, 8 control points, ";
+  // With as few control points two runs from one start mostly end in one basin.
+  return {
+      {"near", near + "closed outlines of up to 200 points", CurveKind::kShort, 8, 0.05, 1.0, all},
+      {"long", near + "closed outlines of 201 to 4,000 points", CurveKind::kLong, 8, 0.05, 5.0,
+       peers},
+      {"open", near + "open curves of up to 400 points", CurveKind::kOpen, 8, 0.05, 1.0, peers},
+      {"circle", "From a disturbed circle, 12 control points, closed outlines of up to 200 points",
+       CurveKind::kShort, 12, 0.0, 1.0, all}};
+}
+
+void Race(const RaceSpec& race, const RaceFlags& flags) {
+  const double most_seconds = race.slower * flags.seconds;
+  std::printf("\n## %s\n\n%zu curves, at most %g s a run.\n\n", race.title.c_str(),
+              CurveFiles(race.curves).size(), most_seconds);
+  PrintHead(kOurs);
+  const std::vector<std::unique_ptr<Problem>> starts = Starts(race, flags.starts);
   std::map<std::string, std::vector<Arrival>> arrivals;
-  for (const std::string& solver : solvers) {
-    std::fprintf(stderr, "%s, %s\n", from.c_str(), solver.c_str());
+  for (const std::string& solver : race.solvers) {
+    std::fprintf(stderr, "%s, %s\n", race.name.c_str(), solver.c_str());
     for (const auto& start : starts) {
-      arrivals[solver].push_back(RunOnce(*start, solver, race.seconds));
+      arrivals[solver].push_back(RunOnce(*start, solver, most_seconds));
     }
   }
-  for (const std::string& solver : solvers) {
+  for (const std::string& solver : race.solvers) {
     std::vector<PairedTimes> paired;
-    for (const std::string& one : ours) {
+    for (const std::string& one : kOurs) {
       paired.push_back(Pair(starts, arrivals[solver], arrivals[one]));
     }
-    PrintRow(solver, arrivals[solver], MedianSeconds(arrivals[ours[0]]), race.seconds, paired);
+    PrintRow(solver, arrivals[solver], MedianSeconds(arrivals[kOurs[0]]), most_seconds, paired);
   }
   std::fflush(stdout);
 }
@@ -278,30 +344,36 @@ double FlagValue(const std::string& argument, double least) {
 }  // namespace batten
 
 int main(int argc, char** argv) {
-  batten::RaceSpec race;
+  batten::RaceFlags flags;
+  const std::vector<batten::RaceSpec> races = batten::Races();
   for (int k = 1; k < argc; ++k) {
     const std::string argument = argv[k];
     if (argument.rfind("--starts=", 0) == 0) {
-      race.starts = static_cast<int>(std::min(batten::FlagValue(argument, 1.0), 1e6));
+      flags.starts = static_cast<int>(std::min(batten::FlagValue(argument, 1.0), 1e6));
     } else if (argument.rfind("--seconds=", 0) == 0) {
-      race.seconds = batten::FlagValue(argument, 1e-3);
+      flags.seconds = batten::FlagValue(argument, 1e-3);
+    } else if (argument.rfind("--table=", 0) == 0) {
+      flags.table = argument.substr(argument.find('=') + 1);
     } else {
-      batten::Fail("unknown argument " + argument + "; known: --starts=N --seconds=S");
+      batten::Fail("unknown argument " + argument + "; known: --starts=N --seconds=S --table=NAME");
     }
   }
+  const auto is_asked = [&](const batten::RaceSpec& race) {
+    return flags.table.empty() || race.name == flags.table;
+  };
+  if (std::none_of(races.begin(), races.end(), is_asked)) {
+    batten::Fail("--table: found \"" + flags.table + "\"; allowed: near, long, open, circle");
+  }
   std::printf(
-      "# Free parameters\n\nClosed outlines of at most 200 points, %d starts each, one thread. A "
-      "run's time is that to a gap of 1e-6 to the minimum of its own basin, found by polishing its "
-      "end; runs that do not arrive in %g s count as slowest. Two runs from one start are a pair "
-      "where both ends are polished to one curve (1e-6 of the size), and *times its time* is the "
-      "median over pairs of the ratio of their times.\n",
-      race.starts, race.seconds);
-  // With as few control points two runs from one start mostly end in one basin.
-  race.control_points = 8;
-  race.near = 0.05;
-  batten::Race(race);
-  race.control_points = 12;
-  race.near = 0.0;
-  batten::Race(race);
+      "# Free parameters\n\n%d starts of each curve, one thread. A run's time is that to a gap of "
+      "1e-6 to the minimum of its own basin, found by polishing its end; runs that do not arrive "
+      "in "
+      "time count as slowest. Two runs from one start are a pair where both ends are polished to "
+      "one curve (1e-6 of the size), and *times its time* is the median over pairs of the ratio of "
+      "their times.\n",
+      flags.starts);
+  for (const batten::RaceSpec& race : races) {
+    if (is_asked(race)) batten::Race(race, flags);
+  }
   return 0;
 }

@@ -23,6 +23,11 @@ Points SampleSpans(const BsplineCurve& curve) {
       Eigen::Map<const Eigen::VectorXd>(t.data(), static_cast<Eigen::Index>(t.size())));
 }
 
+/// The longest side of the box around the points.
+double LongestSide(const Points& points) {
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+}
+
 double LargestDistance(const Points& samples, const BsplineCurve& curve) {
   Eigen::VectorXd t = Eigen::VectorXd::Constant(samples.rows(), curve.basis().domain_begin());
   Eigen::VectorXd squared;
@@ -133,7 +138,9 @@ std::vector<int> FindBasins(const BsplineBasis& basis, double size,
       const double apart = energy - first.energy_at_foot_points;
       if (apart > kLikeEnergies * energy && energy > all_fit) break;
       const BsplineCurve other(basis, first.control_points);
-      if (CurveDistanceBetween(curve, other) < kSameCurve * size) {
+      // Far from the data E hardly says where a curve is, and rounding is the larger there.
+      const double larger = std::max(size, LongestSide(first.control_points));
+      if (CurveDistanceBetween(curve, other) < kSameCurve * larger) {
         basins[k] = static_cast<int>(b);
       }
     }

@@ -34,7 +34,7 @@ double CurveDistanceBetween(const BsplineCurve& a, const BsplineCurve& b);
 
 /// Basin of each end, 0, 1, ... in the order of their energies at foot points, with fixed
 /// parameters of their energies: ends whose curves are nearer to each other than kSameCurve of the
-/// data's size share one.
+/// data's size share one; of the first one's own size where it goes farther than the data.
 std::vector<int> FindBasins(const Problem& problem, const std::vector<BasinEnd>& ends);
 /// The same where the problem is not at hand: `size` is that of its data.
 std::vector<int> FindBasins(const BsplineBasis& basis, double size,

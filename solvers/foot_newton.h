@@ -2,6 +2,7 @@
 #define BATTEN_SOLVERS_FOOT_NEWTON_H_
 
 #include "solvers/joint_descent.h"
+#include "splines/closest_point.h"
 
 namespace batten {
 
@@ -29,6 +30,7 @@ class FootNewtonSolver final : public JointDescent {
   int longest_wait_;
   int wait_ = 1;  // steps from one projection to the next
   int waited_ = 0;
+  FootWatch watch_;
 };
 
 }  // namespace batten

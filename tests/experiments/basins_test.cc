@@ -68,6 +68,18 @@ TEST(Basins, OfCurvesThroughAllPointsAreToldByTheCurves) {
   EXPECT_EQ(FindBasins(round.basis(), 2.0, ends), (std::vector<int>{0, 0, 0, 1}));
 }
 
+TEST(Basins, OfCurvesFarLargerThanTheDataAreToldByTheirOwnSize) {
+  // 2e4 across beside data of size 1.
+  std::vector<BasinEnd> ends(3);
+  const double moves[] = {0.0, 1e-3, 0.5};
+  for (int k = 0; k < 3; ++k) {
+    ends[k].control_points = Round(8, 1e4, 0.0).control_points();
+    ends[k].control_points.col(0).array() += moves[k];
+    ends[k].energy_at_foot_points = 3.0;
+  }
+  EXPECT_EQ(FindBasins(Round(8, 1.0, 0.0).basis(), 1.0, ends), (std::vector<int>{0, 0, 1}));
+}
+
 TEST(Basins, PolishingABasinAgainFindsTheSameCurve) {
   const auto problem = LoadCatalogueProblem("dolphin_free");
   const CurveFit& fit = *problem->curve_fit();
