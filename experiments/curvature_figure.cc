@@ -190,7 +190,7 @@ std::vector<NamedCurve> FitBesideOthers(const Problem& problem, const Eigen::Vec
   };
   const auto end = std::remove_if(spec.terms.begin(), spec.terms.end(), is_fairing);
   const bool is_fair = end != spec.terms.end() && end != spec.terms.begin();
-  if (is_fair && fit.basis().num_control_points() != fit.parameters().size()) {
+  if (is_fair && fit.basis().num_control_points() < fit.parameters().size()) {
     spec.terms.erase(end, spec.terms.end());
     spec.parameters.reset();
     spec.given_knots = fit.basis().knots();

@@ -34,8 +34,8 @@ std::vector<PlotPanel> CurvaturePanels(const std::vector<NamedCurve>& curves);
 /// The fit at x and, for comparison, what banded_qr finds of: the same fit without its fairing
 /// terms, where it has some; the curve of the same degree that interpolates the data at the fit's
 /// parameters (fixed ones, or those that it started from), knots averaged from these. The second
-/// alone where the first has as many control points as there are points; without it if parameters
-/// coincide, are more than 20,000, or fewer than a curve needs.
+/// alone where the first has as many control points as there are points, or more; without it if
+/// parameters coincide, are more than 20,000, or fewer than a curve needs.
 std::vector<NamedCurve> FitBesideOthers(const Problem& problem, const Eigen::VectorXd& x);
 
 }  // namespace batten

@@ -38,11 +38,15 @@ double ObservedRate(const RunResult& result) {
   const double ratio = result.trace[static_cast<std::size_t>(last)].gradient_norm /
                        result.trace[static_cast<std::size_t>(first)].gradient_norm;
   if (std::abs(ratio - 1.0) < kStandsStill) return std::numeric_limits<double>::quiet_NaN();
-  // What ends by itself at such a limit may still have been on its way in these iterations.
+  // What ends at such a limit may still have been on its way in these iterations.
+  const SolverInfo* const info = SolverRegistry::Global().Find(result.solver.name);
+  const bool has_limit = info != nullptr && !info->limit.empty();
+  const StopReason reason = result.outcome.reason;
+  const bool ended_itself =
+      reason == StopReason::kNativeStop || (has_limit && reason == StopReason::kStepSmall);
   const double last_factor = result.trace[static_cast<std::size_t>(last)].gradient_norm /
                              result.trace[static_cast<std::size_t>(last) - 1].gradient_norm;
-  if (result.outcome.reason == StopReason::kNativeStop &&
-      std::abs(last_factor - 1.0) < kComesToAStand) {
+  if (ended_itself && std::abs(last_factor - 1.0) < kComesToAStand) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   return std::pow(ratio, 1.0 / (last - first));

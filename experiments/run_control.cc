@@ -290,13 +290,16 @@ StopReason RunControl::CheckLimit() const {
   return StopReason::kNotRun;
 }
 
-/// |g|, as inside. NaN where E or g has no value; E is then what was found of it, or NaN.
+/// |g|, as inside. NaN where E or g has no value; so is E where it has none itself.
 double RunControl::Evaluate(const Eigen::VectorXd& x, double* energy, Eigen::VectorXd* gradient,
                             double* violation) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   *energy = kNan;
   *violation = 0.0;
-  if (!x.allFinite() || reporter_.EnergyAndGradient(x, energy, gradient) != Status::kOk) {
+  if (!x.allFinite()) return kNan;
+  if (reporter_.EnergyAndGradient(x, energy, gradient) != Status::kOk) {
+    // A sum over some of the terms is no E.
+    if (reporter_.Energy(x, energy) != Status::kOk) *energy = kNan;
     return kNan;
   }
   if (problem_.nonlinear_constraints() == nullptr) return gradient->norm();

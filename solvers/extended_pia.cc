@@ -99,11 +99,11 @@ std::optional<Outcome> ExtendedPiaSolver::Inspect(const Eigen::VectorXd& x,
   if (own_limit_.Reached(move, x)) {
     return Outcome{StopReason::kNativeStop,
                    terms_.empty()
-                       ? "it has reached its own limit, which is not the least-squares "
-                         "curve unless that meets all points"
-                       : "it has reached its own limit, which is not the minimum of E: at "
-                         "each control point the residuals of its group balance the pull "
-                         "of the further terms"};
+                       ? "its steps are 1e-10 of the first one: it goes to its own limit, which "
+                         "is not the least-squares curve unless that meets all points"
+                       : "its steps are 1e-10 of the first one: it goes to its own limit, which "
+                         "is not the minimum of E: at each control point the residuals of its "
+                         "group balance the pull of the further terms"};
   }
   return guard_.Check(move);
 }

@@ -76,7 +76,12 @@ Status IrlsSolver::Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) {
   const auto view = CurveView::Make(problem, std::move(sources), nullptr);
   *g_of_x = x;
   const Outcome outcome = direct_->SolveRows(*view, problem, context(), g_of_x);
+  said_ = outcome.message;
   return outcome.reason == StopReason::kSolved ? Status::kOk : Status::kNonFinite;
+}
+
+void IrlsSolver::AtEnd() {
+  if (!said_.empty()) context()->Note("last solve", said_);
 }
 
 SolverEntry IrlsEntry() {

@@ -2,6 +2,7 @@
 #define BATTEN_SOLVERS_IRLS_H_
 
 #include <memory>
+#include <string>
 
 #include "solvers/direct_solver.h"
 #include "solvers/solver_registry.h"
@@ -23,9 +24,11 @@ class IrlsSolver final : public FixedPoint {
 
  private:
   std::optional<Outcome> DoStart(Eigen::VectorXd* /*x*/) override { return std::nullopt; }
+  void AtEnd() override;
 
   std::unique_ptr<Solver> base_;
   DirectSolver* direct_;  ///< base_, if it is one.
+  std::string said_;      ///< By the base of its last solve.
 };
 
 /// The registry's row: takes the base.

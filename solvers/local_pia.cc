@@ -39,7 +39,7 @@ std::optional<Outcome> LocalPiaSolver::Inspect(const Eigen::VectorXd& x,
   if (x == g_of_x) {
     return Outcome{StopReason::kNativeStop,
                    has_further_terms() ? "no control point moves by more than the tolerance: it "
-                                         "has reached its own limit, which is not the minimum of E"
+                                         "goes to its own limit, which is not the minimum of E"
                                        : "every point is met to the tolerance"};
   }
   return PairedIteration::Inspect(x, g_of_x);

@@ -175,8 +175,8 @@ std::optional<Outcome> LspiaSolver::Inspect(const Eigen::VectorXd& x,
   const double length = move_.norm();
   if (weighted_.has_value() && own_limit_.Reached(length, x)) {
     return Outcome{StopReason::kNativeStop,
-                   "it has reached its own limit, which is not the minimum of E: fairing is "
-                   "weighed by control point"};
+                   "its steps are 1e-10 of the first one: it goes to its own limit, which is not "
+                   "the minimum of E: fairing is weighed by control point"};
   }
   const bool as_long = last_move_.size() == move_.size() && length >= kSameLength * last_length_;
   // Hardly ever: moves shrink.

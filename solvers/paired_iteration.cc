@@ -157,9 +157,11 @@ std::optional<Outcome> PairedIteration::Inspect(const Eigen::VectorXd& x,
                                                 const Eigen::VectorXd& /*g_of_x*/) {
   const double move = moves_.norm();
   if (has_further_terms() && own_limit_.Reached(move, x)) {
-    return Outcome{StopReason::kNativeStop,
-                   "it has reached its own limit, which is not the minimum of E: at each control "
-                   "point the residual balances the pull of the further terms"};
+    return Outcome{
+        StopReason::kNativeStop,
+        "its steps are 1e-10 of the first one: it goes to its own limit, which is not the "
+        "minimum of E: at each control point the residual balances the pull of the "
+        "further terms"};
   }
   return guard_.Check(move);
 }

@@ -9,6 +9,7 @@
 #include "experiments/end_notes.h"
 #include "experiments/figures.h"
 #include "experiments/fit_report.h"
+#include "experiments/loss_notes.h"
 #include "experiments/max_distance_fit.h"
 #include "experiments/run.h"
 #include "experiments/short_number.h"
@@ -33,7 +34,8 @@ DEFINE_string(figure, "",
 DEFINE_string(
     curvature_figure, "",
     "SVG of the curvature: combs and curvature over arc length of the fit, of the curve that "
-    "interpolates the data, and of the same fit without its fairing terms.");
+    "interpolates the data, and of the same fit without its fairing terms, where "
+    "banded_qr solves these.");
 
 namespace batten {
 namespace {
@@ -198,6 +200,7 @@ int FitAndWrite(const FitRequest& request, const NameSpec& solver, const RunSpec
   if (!run.skipped.empty()) return Refuse("--solver: " + run.skipped, output);
 
   NoteDistanceFromMinimum(*problem, &run);
+  NoteLosses(*problem, &run);
   FitReport report = MeasureFit(*problem, run, spec);
   report.fairing_choice = std::move(choice);
   if (report.fairness.has_value()) NoteErrorsOfRules(*problem, *report.fairness, &run);
