@@ -65,7 +65,7 @@ Status GoToFeet(Objective* objective, int threads, Eigen::VectorXd* x) {
   const CurveFit& fit = *objective->problem().curve_fit();
   if (!fit.has_free_parameters() || objective->free_view() == nullptr) return Status::kOk;
   Eigen::VectorXd all = objective->Expand(*x);
-  const Status status = ProjectParameters(objective, threads, *x, nullptr, &all);
+  const Status status = ProjectParameters(objective, threads, *x, &all);
   if (status == Status::kOk) *x = objective->problem().elimination().FreeVariables(all);
   return status;
 }

@@ -39,7 +39,6 @@ std::string FootIteration::WhyUnsupported(const Objective& objective) const {
 std::optional<Outcome> FootIteration::DoStart(Eigen::VectorXd* x) {
   guard_.Reset();
   found_no_part_ = false;
-  watch_ = FootWatch();
   // Models for points lie above E and touch it, but for terms that are not affine.
   const bool is_bound = kind_ == FootModelKind::kPoint;
   searches_ = search_ || (is_bound && !objective()->free_view()->curved_terms().empty());
@@ -57,7 +56,7 @@ Status FootIteration::Complete(Eigen::VectorXd* x) {
   // Projected parameters are no variables: the next step searches them.
   if (objective()->free_view()->projected()) return Status::kOk;
   Eigen::VectorXd all = objective()->Expand(*x);
-  const Status status = ProjectParameters(objective(), context()->threads(), *x, &watch_, &all);
+  const Status status = ProjectParameters(objective(), context()->threads(), *x, &all);
   if (status == Status::kOk) *x = FreeVariablesOf(*objective(), all);
   return status;
 }
@@ -82,7 +81,7 @@ Status FootIteration::FindStep(const Eigen::VectorXd& x, Eigen::VectorXd* all,
   if (!objective()->Allow(Evaluation::kJacobian, &x)) return Status::kStop;
   *all = AllWithParameters(*objective(), x);
   if (objective()->free_view()->projected()) {
-    const Status status = ProjectParameters(objective(), context()->threads(), x, nullptr, all);
+    const Status status = ProjectParameters(objective(), context()->threads(), x, all);
     if (status != Status::kOk) return status;
   }
   return MakeStep(*all, step) ? Status::kOk : Status::kNonFinite;

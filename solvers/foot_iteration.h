@@ -7,7 +7,6 @@
 #include "solvers/foot_model.h"
 #include "solvers/stall_guard.h"
 #include "solvers/stepper.h"
-#include "splines/closest_point.h"
 
 namespace batten {
 
@@ -50,7 +49,6 @@ class FootIteration : public FixedPoint {
   bool searches_ = false;  // in this run
   std::unique_ptr<FootModel> model_;
   bool found_no_part_ = false;  // of the last step that lowers E
-  FootWatch watch_;
   StallGuard guard_;
 };
 

@@ -21,12 +21,11 @@ SolverInfo FootNewtonSolver::ClassInfo() {
 std::optional<Outcome> FootNewtonSolver::DoStart(Eigen::VectorXd* x) {
   wait_ = 1;
   waited_ = 0;
-  watch_ = FootWatch();
   return JointDescent::DoStart(x);
 }
 
 Status FootNewtonSolver::CompleteStart(const Eigen::VectorXd& x, Eigen::VectorXd* all) {
-  return ProjectParameters(objective(), context()->threads(), x, &watch_, all);
+  return ProjectParameters(objective(), context()->threads(), x, all);
 }
 
 Status FootNewtonSolver::Complete(Eigen::VectorXd* all) {
@@ -45,7 +44,7 @@ std::optional<Outcome> FootNewtonSolver::DoStep(Eigen::VectorXd* x) {
   waited_ = 0;
   const double before = energy();
   Eigen::VectorXd all = objective()->Expand(next);
-  Status status = ProjectParameters(objective(), context()->threads(), next, &watch_, &all);
+  Status status = ProjectParameters(objective(), context()->threads(), next, &all);
   // Refused, the run ends at the iterate that was booked last.
   if (status == Status::kOk) status = GoTo(all, x);
   if (status != Status::kOk) return Ended(status);

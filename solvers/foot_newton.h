@@ -2,7 +2,6 @@
 #define BATTEN_SOLVERS_FOOT_NEWTON_H_
 
 #include "solvers/joint_descent.h"
-#include "splines/closest_point.h"
 
 namespace batten {
 
@@ -30,7 +29,6 @@ class FootNewtonSolver final : public JointDescent {
   int longest_wait_;
   int wait_ = 1;  // steps from one projection to the next
   int waited_ = 0;
-  FootWatch watch_;
 };
 
 }  // namespace batten

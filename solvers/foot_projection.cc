@@ -1,5 +1,7 @@
 #include "solvers/foot_projection.h"
 
+#include "splines/closest_point.h"
+
 namespace batten {
 
 Eigen::VectorXd AllWithParameters(const Objective& objective, const Eigen::VectorXd& x) {
@@ -25,7 +27,7 @@ void FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all,
 }
 
 Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorXd& free,
-                         FootWatch* watch, Eigen::VectorXd* all) {
+                         Eigen::VectorXd* all) {
   if (!objective->Allow(Evaluation::kProjection, &free)) return Status::kStop;
   if (!all->allFinite()) return Status::kNonFinite;
   const FreeView& view = *objective->free_view();
@@ -34,12 +36,7 @@ Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorX
       all->data() + sites.control_point_offset, view.num_control_points(), view.dimension());
   const BsplineCurve curve(*sites.basis, control_points);
   Eigen::VectorXd feet = all->segment(sites.parameter_offset, view.num_points());
-  const ClosestPoint closest(curve);
-  if (watch != nullptr) {
-    closest.FindAll(sites.points, threads, watch, &feet);
-  } else {
-    closest.FindAll(sites.points, threads, &feet, nullptr);
-  }
+  ClosestPoint(curve).FindAll(sites.points, threads, &feet, nullptr);
   for (int i = 0; i < view.num_points(); ++i) {
     if (!view.is_held(i)) (*all)[sites.parameter_offset + i] = PastTheEnd(*sites.basis, feet[i]);
   }

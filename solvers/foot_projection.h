@@ -2,7 +2,6 @@
 #define BATTEN_SOLVERS_FOOT_PROJECTION_H_
 
 #include "problems/objective.h"
-#include "splines/closest_point.h"
 
 namespace batten {
 
@@ -15,9 +14,8 @@ void FreeVariablesOf(const Objective& objective, const Eigen::VectorXd& all, Eig
 
 /// Sets the parameters in `all` to the foot points on the curve of its control points, held ones
 /// excepted; counted as one projection at the free variables `free`. kNonFinite: `all` is no curve.
-/// `watch`, which may be null: of the earlier ones for this objective, each from the feet so far.
 Status ProjectParameters(Objective* objective, int threads, const Eigen::VectorXd& free,
-                         FootWatch* watch, Eigen::VectorXd* all);
+                         Eigen::VectorXd* all);
 
 }  // namespace batten
 

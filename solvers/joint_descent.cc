@@ -105,7 +105,7 @@ Status JointDescent::Project(Eigen::VectorXd* all) {
   const Eigen::VectorXd free = FreeVariablesOf(*objective(), *all);
   // Not from where the last step leaves them: what is found is a function of the control points.
   *all = AllWithParameters(*objective(), free);
-  return ProjectParameters(objective(), context()->threads(), free, nullptr, all);
+  return ProjectParameters(objective(), context()->threads(), free, all);
 }
 
 Status JointDescent::Propose() {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "splines/closest_point_search.h"
+#include "splines/curve_distance.h"
 
 namespace batten {
 namespace {
@@ -15,6 +15,17 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // A whole span is seldom convex, a quarter mostly is.
 constexpr int kPiecesPerSpan = 4;
+
+/// D is -1 where it is known at run time only.
+template <int D, typename Box>
+double SquaredDistanceToBox(const Box& box, const double* point, int dimension) {
+  double sum = 0.0;
+  for (int c = 0; c < (D >= 0 ? D : dimension); ++c) {
+    const double outside = std::max({box.low[c] - point[c], point[c] - box.high[c], 0.0});
+    sum += outside * outside;
+  }
+  return sum;
+}
 
 /// Calls work(i) for i = 0..m-1, `threads` of them sharing the range.
 template <typename Work>
@@ -37,7 +48,6 @@ void ForEachRow(Eigen::Index m, int threads, const Work& work) {
 ClosestPoint::ClosestPoint(const BsplineCurve& curve) : curve_(curve) {
   MakePieces();
   BuildBoxes();
-  FindReaches();
 }
 
 double ClosestPoint::Tolerance(double distance) const {
@@ -127,120 +137,180 @@ void ClosestPoint::BuildBoxes() {
   }
 }
 
-/// f'' / 2 = |C'|^2 + (C - Q) . C'' is positive where |C - Q| < min |C'|^2 / max |C''|, with C' and
-/// C'' in the hull of their Bezier points.
-double ClosestPoint::ConvexReach(const BezierStretch& stretch, double* length) const {
-  const int p = stretch.degree, d = stretch.dimension;
-  const double h = stretch.high - stretch.low;
-  const auto at = [&](int i, int c) { return stretch.points[i * d + c]; };
-  double chord[kMaxDimension], squared_chord = 0.0;
-  for (int c = 0; c < d; ++c) {
-    chord[c] = at(p, c) - at(0, c);
-    squared_chord += chord[c] * chord[c];
+/// One point's search.
+class ClosestPoint::Search {
+ public:
+  Search(const ClosestPoint& all, const double* point, double start)
+      : all_(all), curve_(all.curve_), point_(point) {
+    const BsplineBasis& basis = curve_.basis();
+    start = basis.Wrap(start);
+    if (!std::isfinite(start)) start = basis.domain_begin();
+    const BezierStretch stretch = all.Stretch(all.PieceOf(basis.FindSpan(start), start));
+    // No farther than the start itself; a good one excludes nearly all the rest.
+    best_ = FindFoot(stretch, point, stretch.low, start, stretch.high);
+    if (!std::isfinite(best_.squared_distance)) return;
+    SetThreshold();
+    VisitBoxes();
   }
-  double slowest = std::numeric_limits<double>::infinity(), sharpest = 0.0;
-  *length = 0.0;
-  for (int i = 0; i < p; ++i) {
-    double along = 0.0, squared_leg = 0.0, squared_bend = 0.0;
-    for (int c = 0; c < d; ++c) {
-      const double leg = at(i + 1, c) - at(i, c);
-      const double bend = i + 1 < p ? at(i + 2, c) - at(i + 1, c) - leg : 0.0;
-      along += leg * chord[c];
-      squared_leg += leg * leg;
-      squared_bend += bend * bend;
-    }
-    *length += std::sqrt(squared_leg);
-    slowest = std::min(slowest, along);
-    sharpest = std::max(sharpest, std::sqrt(squared_bend));
-  }
-  const double least_leg = slowest / std::sqrt(squared_chord) - 4.0 * std::sqrt(d) * rounding_;
-  const double speed = p * std::max(least_leg, 0.0) / h;
-  const double bend = p * (p - 1) * (sharpest + 4.0 * rounding_) / (h * h);
-  return speed > 0.0 ? speed * speed / bend : 0.0;
-}
 
-void ClosestPoint::FindReaches() {
-  const auto count = static_cast<int>(spans_.size()) * kPiecesPerSpan;
-  const BsplineBasis& basis = curve_.basis();
-  std::vector<double> own(static_cast<std::size_t>(count)), lengths(own);
-  for (int k = 0; k < count; ++k) own[k] = ConvexReach(Stretch(k), &lengths[k]);
-  reaches_.assign(own.size(), 0.0);
-  // Where a knot's multiplicity is the degree C' may jump.
-  const auto is_smooth_before = [&](int piece) {
-    if (piece % kPiecesPerSpan != 0) return true;
-    const int span = spans_[piece / kPiecesPerSpan];
-    return basis.knots()[span - basis.degree() + 1] < basis.knots()[span];
-  };
-  constexpr double kSafe = 1.0 - 1e-9;
-  for (int k = 0; k < count; ++k) {
-    double reach = own[k], length = lengths[k];
-    bool smooth = true;
-    for (const int near : {k - 1, k + 1}) {
-      const bool is_inside = near >= 0 && near < count;
-      if (!is_inside && !basis.periodic()) continue;
-      const int other = (near + count) % count;
-      reach = std::min(reach, own[other]);
-      length += lengths[other];
-      smooth = smooth && is_smooth_before(near < k ? k : other);
-    }
-    if (smooth) reaches_[k] = kSafe * reach - length;
+  /// Whether another stretch is as near: everything within the tolerance is looked at again.
+  void LookForATie() {
+    if (!std::isfinite(best_.squared_distance)) return;
+    const double distance = std::sqrt(best_.squared_distance);
+    farthest_tie_ = distance + all_.Tolerance(distance);
+    limit_ = farthest_tie_ * farthest_tie_;
+    VisitBoxes();
   }
-}
 
-double ClosestPoint::Clearance(const double* point, int piece) const {
-  switch (curve_.dimension()) {
-    case 2:
-      return ClearanceOf<2>(point, piece);
-    case 3:
-      return ClearanceOf<3>(point, piece);
-    default:
-      return ClearanceOf<-1>(point, piece);
+  FootPoint Result() const {
+    const BsplineBasis& basis = curve_.basis();
+    FootPoint foot;
+    foot.parameter = basis.Wrap(best_.t);
+    foot.squared_distance = best_.squared_distance;
+    foot.lower_bound = std::sqrt(std::min(certified_, left_open_));
+    foot.tie = tie_;
+    foot.other = basis.Wrap(other_);
+    foot.num_pieces = num_pieces_;
+    return foot;
   }
-}
 
-template <int D>
-double ClosestPoint::ClearanceOf(const double* point, int piece) const {
-  struct Visit {
-    int level;
-    int index;
-    double squared_bound;
-  };
-  const int d = curve_.dimension();
-  double least = std::numeric_limits<double>::infinity();
-  std::array<Visit, 64> waiting;
-  int num_waiting = 0;
-  waiting[num_waiting++] = {static_cast<int>(levels_.size()) - 1, 0, 0.0};
-  while (num_waiting > 0) {
-    const Visit visit = waiting[--num_waiting];
-    if (!(visit.squared_bound < least)) continue;
-    if (visit.level == 0) {
-      if (!AreNeighbours(piece, visit.index)) least = visit.squared_bound;
-      continue;
+ private:
+  bool IsNeighbour(const CurveDistance& a, const CurveDistance& b) const {
+    constexpr double kNeighbours = 1e-6;
+    double apart = std::abs(a.t - b.t);
+    const double length = curve_.basis().domain_length();
+    if (curve_.basis().periodic()) apart = std::min(apart, length - apart);
+    return apart <= kNeighbours * length;
+  }
+
+  /// Of two that differ by rounding only and are neighbours, the better one has the smaller slope:
+  /// at half the digits of t the distance no longer tells them apart.
+  bool IsBetter(const CurveDistance& a, const CurveDistance& b) const {
+    if (IsNeighbour(a, b) && std::abs(a.squared_distance - b.squared_distance) <= b.rounding) {
+      return std::abs(a.slope) < std::abs(b.slope);
     }
-    const std::vector<Box>& boxes = levels_[visit.level - 1];
-    const auto child = [&](int index) {
-      return Visit{visit.level - 1, index, SquaredDistanceToBox<D>(boxes[index], point, d)};
+    // Nor do feet at one distance take turns: the first one, the start's, stays.
+    return a.squared_distance < b.squared_distance - b.rounding;
+  }
+
+  /// Stretches that are nowhere below it are not looked at.
+  void SetThreshold() {
+    const double distance = std::sqrt(best_.squared_distance);
+    const double lowest = std::max(0.0, distance - all_.Tolerance(distance));
+    certified_ = limit_ = lowest * lowest;
+  }
+
+  void Consider(const CurveDistance& found) {
+    if (std::isfinite(farthest_tie_)) {
+      if (IsNeighbour(found, best_) || std::sqrt(found.squared_distance) > farthest_tie_) return;
+      tie_ = true;
+      other_ = found.t;
+      limit_ = -1.0;  // one is enough
+    } else if (IsBetter(found, best_)) {
+      best_ = found;
+      SetThreshold();
+    }
+  }
+
+  void VisitBoxes() {
+    switch (curve_.dimension()) {
+      case 2:
+        return VisitBoxesOf<2>();
+      case 3:
+        return VisitBoxesOf<3>();
+      default:
+        return VisitBoxesOf<-1>();
+    }
+  }
+
+  template <int D>
+  void VisitBoxesOf() {
+    struct Visit {
+      int level;
+      int index;
+      double squared_bound;
     };
-    Visit near = child(2 * visit.index);
-    if (2 * visit.index + 1 < static_cast<int>(boxes.size())) {
-      Visit far = child(2 * visit.index + 1);
-      if (far.squared_bound < near.squared_bound) std::swap(near, far);
-      waiting[num_waiting++] = far;
+    const auto& levels = all_.levels_;
+    const int d = curve_.dimension();
+    // Each level leaves at most one sibling waiting, and int indices allow no more than 32 levels.
+    std::array<Visit, 64> waiting;
+    int num_waiting = 0;
+    waiting[num_waiting++] = {static_cast<int>(levels.size()) - 1, 0, 0.0};
+    while (num_waiting > 0) {
+      const Visit visit = waiting[--num_waiting];
+      if (!(visit.squared_bound < limit_)) continue;
+      if (visit.level == 0) {
+        VisitPiece(visit.index);
+        continue;
+      }
+      const std::vector<Box>& boxes = levels[visit.level - 1];
+      const auto child = [&](int index) {
+        return Visit{visit.level - 1, index, SquaredDistanceToBox<D>(boxes[index], point_, d)};
+      };
+      Visit near = child(2 * visit.index);
+      if (2 * visit.index + 1 < static_cast<int>(boxes.size())) {
+        Visit far = child(2 * visit.index + 1);
+        if (far.squared_bound < near.squared_bound) std::swap(near, far);
+        waiting[num_waiting++] = far;
+      }
+      waiting[num_waiting++] = near;
     }
-    waiting[num_waiting++] = near;
   }
-  return std::sqrt(least);
-}
 
-bool ClosestPoint::AreNeighbours(int a, int b) const {
-  const int apart = std::abs(a - b);
-  return apart <= 1 ||
-         (curve_.basis().periodic() && apart + 1 == static_cast<int>(reaches_.size()));
-}
+  void VisitPiece(int index) {
+    const BezierStretch stretch = all_.Stretch(index);
+    VisitPart(DistancePiece(stretch.degree, stretch.dimension, stretch.points, point_, stretch.low,
+                            stretch.high, all_.rounding_),
+              stretch);
+  }
+
+  void VisitPart(const DistancePiece& piece, const BezierStretch& stretch) {
+    if (!(piece.lower_bound() < limit_)) return;
+    ++num_pieces_;
+    const double low = piece.low();
+    const double high = piece.high();
+    const double middle = low + 0.5 * (high - low);
+    switch (piece.shape()) {
+      case DistancePiece::Shape::kRises:
+        return Consider(MeasureDistance(stretch, point_, low));
+      case DistancePiece::Shape::kFalls:
+        return Consider(MeasureDistance(stretch, point_, high));
+      case DistancePiece::Shape::kConvex:
+        // Where the best foot is in it, there is no other one.
+        if (low < best_.t && best_.t < high && best_.is_foot) return;
+        return Consider(FindFoot(stretch, point_, low, middle, high));
+      case DistancePiece::Shape::kUnknown:
+        break;
+    }
+    const bool cannot_be_split = !(low < middle && middle < high);
+    if (cannot_be_split || piece.diameter() <= all_.Tolerance(0.0)) {
+      Consider(MeasureDistance(stretch, point_, middle));
+      if (cannot_be_split) left_open_ = std::min(left_open_, piece.lower_bound());
+      return;
+    }
+    // At most 53 levels deep: then its ends are neighbours.
+    DistancePiece left, right;
+    piece.Split(&left, &right);
+    const bool left_first = left.lower_bound() <= right.lower_bound();
+    VisitPart(left_first ? left : right, stretch);
+    VisitPart(left_first ? right : left, stretch);
+  }
+
+  const ClosestPoint& all_;
+  const BsplineCurve& curve_;
+  const double* point_;
+  CurveDistance best_;
+  double certified_ = std::numeric_limits<double>::quiet_NaN();  // squared
+  double limit_ = certified_;  // what is nowhere below it is left out
+  double farthest_tie_ = std::numeric_limits<double>::infinity();  // finite: looking for ties
+  double left_open_ = std::numeric_limits<double>::infinity();  // bound of what could not be split
+  bool tie_ = false;
+  double other_ = 0.0;
+  int num_pieces_ = 0;
+};
 
 FootPoint ClosestPoint::Find(const double* point, double start, bool look_for_tie) const {
-  Search search(*this, point, start, nullptr);
-  search.Run();
+  Search search(*this, point, start);
   if (look_for_tie) search.LookForATie();
   return search.Result();
 }
@@ -263,32 +333,6 @@ void ClosestPoint::FindAll(const Points& points, int threads, Eigen::VectorXd* p
     (*parameters)[i] = foot.parameter;
     if (squared_distances != nullptr) (*squared_distances)[i] = foot.squared_distance;
   });
-}
-
-void ClosestPoint::FindAll(const Points& points, int threads, FootWatch* watch,
-                           Eigen::VectorXd* parameters) const {
-  watch->GoTo(curve_.control_points(), points.rows());
-  ForEachRow(points.rows(), threads, [&](Eigen::Index i) {
-    Search search(*this, &points(i, 0), (*parameters)[i], watch);
-    search.RunWatched(&watch->homes_[static_cast<std::size_t>(i)]);
-    (*parameters)[i] = search.Result().parameter;
-  });
-}
-
-Eigen::Index FootWatch::NumStayed() const {
-  return std::count_if(homes_.begin(), homes_.end(), [](const Home& home) { return home.stays; });
-}
-
-void FootWatch::GoTo(const Points& control_points, Eigen::Index num_points) {
-  const bool is_known = last_.rows() == control_points.rows() &&
-                        last_.cols() == control_points.cols() &&
-                        static_cast<Eigen::Index>(homes_.size()) == num_points;
-  if (is_known) moved_ += (control_points - last_).rowwise().norm().maxCoeff();
-  if (!is_known || !std::isfinite(moved_)) {
-    homes_.assign(static_cast<std::size_t>(num_points), Home());
-    moved_ = 0.0;
-  }
-  last_ = control_points;
 }
 
 }  // namespace batten

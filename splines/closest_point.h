@@ -21,31 +21,6 @@ struct FootPoint {
   int num_pieces = 0;  ///< Stretches that had to be looked at: the work.
 };
 
-/// What searches for the same points on a curve that moves need not look at again: a foot stays the
-/// nearest one as long as the rest of the curve, by the way that its control points have gone
-/// since, cannot have come nearer. Feet are the same to the bit with and without.
-class FootWatch {
- public:
-  /// Points of the last search that were not searched for.
-  Eigen::Index NumStayed() const;
-
- private:
-  friend class ClosestPoint;
-  /// The piece of the foot found last, and moved_ at which the rest of the curve may be as near as
-  /// the point itself. -1: to be searched.
-  struct Home {
-    int piece = -1;
-    bool stays = false;  // in the last search
-    double budget = 0.0;
-  };
-  /// To the curve of these control points, of the same spline space each time.
-  void GoTo(const Points& control_points, Eigen::Index num_points);
-
-  std::vector<Home> homes_;
-  Points last_;         // control points
-  double moved_ = 0.0;  // no point of the curve has gone farther
-};
-
 /// Closest points on one curve: a global search that cannot miss the nearest stretch. A tree of
 /// boxes around Bezier points excludes what is too far; of the rest, stretches are halved until
 /// their squared distance is seen to be monotone or convex (DistancePiece), or to be no more than
@@ -70,9 +45,6 @@ class ClosestPoint {
   /// >= 1 share the rows in ranges: the bits do not depend on their number.
   std::vector<FootPoint> FindAll(const Points& points, int threads, const Eigen::VectorXd& starts,
                                  bool look_for_ties) const;
-  /// The same with a watch that was at all searches for these points before.
-  void FindAll(const Points& points, int threads, FootWatch* watch,
-               Eigen::VectorXd* parameters) const;
   /// Of the same their parameters, which replace the starts, and distances, which may be null.
   void FindAll(const Points& points, int threads, Eigen::VectorXd* parameters,
                Eigen::VectorXd* squared_distances) const;
@@ -89,13 +61,6 @@ class ClosestPoint {
   BezierStretch Stretch(int piece) const;
   void MakePieces();
   void BuildBoxes();
-  double ConvexReach(const BezierStretch& stretch, double* length) const;
-  void FindReaches();
-  bool AreNeighbours(int a, int b) const;
-  /// No point of the pieces that are neither `piece` nor beside it is nearer.
-  double Clearance(const double* point, int piece) const;
-  template <int D>
-  double ClearanceOf(const double* point, int piece) const;
 
   const BsplineCurve& curve_;
   std::vector<int> spans_;        // those not empty
@@ -103,9 +68,6 @@ class ClosestPoint {
   std::vector<double> beziers_;   // p + 1 points of d coordinates, kPiecesPerSpan a span
   double size_ = 0.0;             // of the curve: longest side of its box
   double rounding_ = 0.0;         // what a coordinate of a point of the curve is off at most
-  // Of pieces: the squared distance of a point nearer to C(t) than this, t in the piece, has one
-  // minimum on the piece and those beside it.
-  std::vector<double> reaches_;
   // levels_[0]: boxes of pieces; each next: of pairs.
   std::vector<std::vector<Box>> levels_;
 };

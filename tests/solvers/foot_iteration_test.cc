@@ -20,7 +20,7 @@ Eigen::VectorXd MovedStart(Objective* objective) {
   for (Eigen::Index k = 0; k < problem.ranges().front().size; ++k) {
     all[k] += RandomBetween(-0.02, 0.02, &random);
   }
-  EXPECT_EQ(ProjectParameters(objective, 1, problem.start(), nullptr, &all), Status::kOk);
+  EXPECT_EQ(ProjectParameters(objective, 1, problem.start(), &all), Status::kOk);
   return all;
 }
 
@@ -33,7 +33,7 @@ double ModelChange(const FootModel& model, const Eigen::VectorXd& v) {
 double EnergyAtFeet(Objective* objective, const Eigen::VectorXd& x, const Eigen::VectorXd& v) {
   Eigen::VectorXd all = x;
   all.head(v.size()) += v;
-  EXPECT_EQ(ProjectParameters(objective, 1, x, nullptr, &all), Status::kOk);
+  EXPECT_EQ(ProjectParameters(objective, 1, x, &all), Status::kOk);
   double energy = 0.0;
   EXPECT_EQ(objective->Energy(all, &energy), Status::kOk);
   return energy;

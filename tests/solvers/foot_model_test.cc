@@ -95,7 +95,7 @@ class FootModels : public ::testing::TestWithParam<ModelCase> {
     for (Eigen::Index k = 0; k < problem_->ranges().front().size; ++k) {
       all[k] += RandomBetween(-0.02, 0.02, &random);
     }
-    EXPECT_EQ(ProjectParameters(&objective_, 1, objective_.start(), nullptr, &all), Status::kOk);
+    EXPECT_EQ(ProjectParameters(&objective_, 1, objective_.start(), &all), Status::kOk);
     return problem_->elimination().FreeVariables(all);
   }
   /// Parameters off the feet by up to `part` of a span; some of an open curve at its ends.
