@@ -14,13 +14,13 @@ namespace {
 constexpr CurvatureMeasure kBending = CurvatureMeasure::kBending;
 constexpr CurvatureMeasure kVariation = CurvatureMeasure::kVariation;
 
-/// What makes the integral, an inverse length to the power 1 or 3, a squared length as E is:
-/// `scale_free` the size of the data, `source` nothing in the user's units.
+/// `scale_free`: the size of the data; `source`: 1 in the user's units.
 double LengthUnit(const FitSetting& setting, const OptionValues& options) {
   return options.Word("units") == "scale_free" ? setting.size : setting.scale;
 }
 constexpr int LengthPower(CurvatureMeasure measure) { return measure == kBending ? 3 : 5; }
 
+/// What makes the integral, an inverse length to the power 1 or 3, a squared length as E is.
 template <CurvatureMeasure kMeasure>
 double Factor(const FitSetting& setting, const OptionValues& options) {
   return std::pow(LengthUnit(setting, options), LengthPower(kMeasure));

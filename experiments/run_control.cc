@@ -245,23 +245,23 @@ StopReason RunControl::CheckConverged(const TraceRow& row, const Eigen::VectorXd
   if (rule_ == NativeRule::kDirect) return StopReason::kNotRun;
   if (!is_held_) return CheckLimit();
   const StopReason reason = ConvergedReason(row, x);
+  if (reason == StopReason::kNotRun) return CheckLimit();
   // Steps that are small are so whatever g is.
-  const bool is_by_gradient = reason != StopReason::kNotRun && reason != StopReason::kStepSmall;
-  const bool is_converged = reason != StopReason::kNotRun && !(is_by_gradient && IsDrawnBack(x));
-  return is_converged ? reason : CheckLimit();
+  const bool holds = reason == StopReason::kStepSmall || !IsDrawnBack(row, x);
+  return holds ? reason : CheckLimit();
 }
 
-/// Parameters past an end have no share in |g|, though E may fall where they move back.
-bool RunControl::IsDrawnBack(const Eigen::VectorXd& x) {
+/// Parameters past an end have no share in |g|, though E may fall where they move back: whether |g|
+/// there no longer ends the run.
+bool RunControl::IsDrawnBack(const TraceRow& row, const Eigen::VectorXd& x) {
   Eigen::VectorXd seated = x;
   if (!reporter_.Seat(&seated)) return false;
   double energy = 0.0, violation = 0.0;
   Eigen::VectorXd gradient;
-  const double norm = Evaluate(seated, &energy, &gradient, &violation) * problem_.units().gradient;
-  const double small = spec_.mode == Mode::kRace
-                           ? spec_.gradient_tolerance * result_->start_gradient_norm
-                           : spec_.native_gradient;
-  return !(norm <= std::max(small, result_->gradient_floor));
+  TraceRow there = row;
+  there.gradient_norm =
+      Evaluate(seated, &energy, &gradient, &violation) * problem_.units().gradient;
+  return ConvergedReason(there, seated) == StopReason::kNotRun;
 }
 
 /// kNotRun: it has not converged.

@@ -57,7 +57,7 @@ class RunControl final : public EvaluationMonitor, public RunContext {
   StopReason CheckStop(const TraceRow& row);
   StopReason CheckConverged(const TraceRow& row, const Eigen::VectorXd& x);
   StopReason ConvergedReason(const TraceRow& row, const Eigen::VectorXd& x);
-  bool IsDrawnBack(const Eigen::VectorXd& x);
+  bool IsDrawnBack(const TraceRow& row, const Eigen::VectorXd& x);
   StopReason CheckLimit() const;
   /// E, its gradient or, under nonlinear constraints, the Lagrangian's, whose norm is returned, and
   /// by how much these constraints are missed; not a number where one of them has no value.

@@ -23,7 +23,10 @@ class IrlsSolver final : public FixedPoint {
   Status Map(const Eigen::VectorXd& x, Eigen::VectorXd* g_of_x) override;
 
  private:
-  std::optional<Outcome> DoStart(Eigen::VectorXd* /*x*/) override { return std::nullopt; }
+  std::optional<Outcome> DoStart(Eigen::VectorXd* /*x*/) override {
+    said_.clear();
+    return std::nullopt;
+  }
   void AtEnd() override;
 
   std::unique_ptr<Solver> base_;
