@@ -32,6 +32,17 @@ struct PackOf {
     for (int l = 0; l < kLanes; ++l) lanes[l] = other.lanes[l];
     return *this;
   }
+  /// Entries that follow each other, at any place.
+  static PackOf Load(const double* source) {
+    PackOf pack;
+    for (int l = 0; l < kLanes; ++l) {
+      // Into a vector, which is a register: into the pack's bytes GCC copies it in halves.
+      Lane lane;
+      __builtin_memcpy(&lane, source + l * kLaneSize, sizeof lane);
+      pack.lanes[l] = lane;
+    }
+    return pack;
+  }
   /// Entry i from source[i * step].
   static PackOf Gather(const double* source, std::ptrdiff_t step) {
     PackOf pack;
@@ -65,14 +76,12 @@ struct PackOf {
   void Store(double* aligned_target) const {
     for (int l = 0; l < kLanes; ++l) reinterpret_cast<Lane*>(aligned_target)[l] = lanes[l];
   }
-  /// The first `count` entries, at any place; what is not loaded is 0.
-  static PackOf LoadFirst(const double* source, int count) {
-    PackOf pack(0.0);
-    for (int i = 0; i < count; ++i) pack.Set(i, source[i]);
-    return pack;
-  }
-  void StoreFirst(double* target, int count) const {
-    for (int i = 0; i < count; ++i) target[i] = lanes[i / kLaneSize][i % kLaneSize];
+  /// At any place.
+  void StoreAll(double* target) const {
+    for (int l = 0; l < kLanes; ++l) {
+      const Lane lane = lanes[l];
+      __builtin_memcpy(target + l * kLaneSize, &lane, sizeof lane);
+    }
   }
   void Set(int i, double value) { lanes[i / kLaneSize][i % kLaneSize] = value; }
   /// Of all entries, in one order for any width.

@@ -61,9 +61,6 @@ FootModel::FootModel(const FreeView& view, int threads)
   has_held_ = std::find(moves_.begin(), moves_.end(), 0.0) != moves_.end();
   order_of_points_.resize(m);
   places_.resize(m);
-  along_.resize(m);
-  denominators_.resize(m);
-  scales_.resize(m);
   span_begins_.resize(spans + 1);
   span_sums_.resize(spans * SpanStride());
   span_energies_.resize(spans);

@@ -127,11 +127,8 @@ class FootModel {
   std::vector<double> moves_;         // m: 0 where t is held, else 1
   bool has_held_;
   std::vector<int> order_of_points_;  // by span
-  std::vector<int> span_begins_;      // into it, and into what is kept in this order:
-  std::vector<double> places_;        // t in the domain
-  std::vector<double> along_;         // C' . r
-  std::vector<double> denominators_;  // of the parameter's step; 0: it stays
-  std::vector<double> scales_;        // w |C'|^2, at least least_speed_, times the damping
+  std::vector<int> span_begins_;      // into it
+  std::vector<double> places_;        // in this order: t in the domain
   double least_speed_ = 0.0;          // |C'|^2 below which damping takes this instead
   std::vector<int> shares_;           // spans of each thread
   // m each, empty without a loss, of the last Sum: w_i rho'(s_i), and 2 w_i / W rho'' / rho'.

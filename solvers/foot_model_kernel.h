@@ -29,6 +29,8 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
   template <typename Pack>
   using AtPoints = typename Base::template AtPoints<Pack>;
   static constexpr int Pairs(int n) { return n * (n + 1) / 2; }
+  /// Of entry (i, j), i <= j < n, in an upper triangle row by row.
+  static constexpr int Place(int i, int j, int n) { return i * n - i * (i - 1) / 2 + j - i; }
 
   /// Sums the model up over a span's points.
   void SumSpan(int span) const {
@@ -42,7 +44,7 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
 #if BATTEN_HAS_AVX2_KERNELS
     if (kStatic && HasAvx2()) return MoveWide(span, step, parameters);
 #endif
-    MovePacks<Pack>(span, step, parameters);
+    MoveBy<Pack>(span, step, parameters);
   }
   /// Newton steps on f = |C(t) - Q|^2 of the span's points, inside the span.
   void ImproveSpan(int span, int steps, double* parameters) const {
@@ -55,14 +57,37 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
  private:
   template <typename Pack>
   inline __attribute__((always_inline)) void SumBy(int span) const {
-    if (model.kind_ != FootModelKind::kNewton) return SumTangent<Pack>(span);
-    model.has_loss() ? SumNewton<true, Pack>(span) : SumNewton<false, Pack>(span);
+    switch (model.kind_) {
+      case FootModelKind::kPoint:
+        return SumTangent<FootModelKind::kPoint, Pack>(span);
+      case FootModelKind::kTangent:
+        return SumTangent<FootModelKind::kTangent, Pack>(span);
+      case FootModelKind::kCurvature:
+        return SumTangent<FootModelKind::kCurvature, Pack>(span);
+      case FootModelKind::kNewton:
+        model.has_loss() ? SumNewton<true, Pack>(span) : SumNewton<false, Pack>(span);
+    }
+  }
+  template <typename Pack>
+  inline __attribute__((always_inline)) void MoveBy(int span, const double* step,
+                                                    double* parameters) const {
+    switch (model.kind_) {
+      case FootModelKind::kPoint:
+        return MovePacks<FootModelKind::kPoint, false, Pack>(span, step, parameters);
+      case FootModelKind::kTangent:
+        return MovePacks<FootModelKind::kTangent, false, Pack>(span, step, parameters);
+      case FootModelKind::kCurvature:
+        return MovePacks<FootModelKind::kCurvature, false, Pack>(span, step, parameters);
+      case FootModelKind::kNewton:
+        model.has_loss() ? MovePacks<FootModelKind::kNewton, true, Pack>(span, step, parameters)
+                         : MovePacks<FootModelKind::kNewton, false, Pack>(span, step, parameters);
+    }
   }
 #if BATTEN_HAS_AVX2_KERNELS
   __attribute__((flatten, target("avx2"))) void SumWide(int span) const { SumBy<WidePack>(span); }
   __attribute__((flatten, target("avx2"))) void MoveWide(int span, const double* step,
                                                          double* parameters) const {
-    MovePacks<WidePack>(span, step, parameters);
+    MoveBy<WidePack>(span, step, parameters);
   }
   __attribute__((flatten, target("avx2"))) void ImproveWide(int span, int steps,
                                                             double* parameters) const {
@@ -93,51 +118,55 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
 
   /// Calls body with what is known at each pack of points, w, w times the factor a of g g', and
   /// C' . r.
-  template <bool kBent, typename Pack, typename Body>
+  template <FootModelKind K, bool kBent, typename Pack, typename Body>
   inline __attribute__((always_inline)) void ForEachEliminated(int span, const Body& body) const {
+    const auto curve = this->template CurveOf<Pack>(span);
+    const auto basis = this->template BasisOf<Pack>(span);
     this->template ForEachPack<Pack>(span, [&](const PointPack<Pack>& pack) {
       AtPoints<Pack> at;
-      this->EvaluateCurve(span, pack, &at);
-      this->EvaluateBasis(span, pack, &at);
-      Pack along;
+      this->EvaluateCurve(curve, pack, &at);
+      this->EvaluateBasis(basis, pack, &at);
       if constexpr (kBent) this->EvaluateLoss(pack, &at);
-      const Pack a = this->template Eliminate<kBent>(at, pack, &along);
-      body(at, pack.weight, pack.weight * a, along);
+      const auto elimination = this->template Eliminate<K, kBent>(at, pack);
+      body(at, pack.weight, elimination.Divided(pack.weight), elimination.along);
     });
   }
 
   /// B B' (x) M with M = w (I - a C' C''): the products of basis functions times M's upper
   /// triangle.
-  template <typename Pack>
+  template <FootModelKind K, typename Pack>
   inline __attribute__((always_inline)) void SumTangent(int span) const {
     const int k = order(), d = dimension(), size = k * d, num_entries = Pairs(d);
     Pack blocks[Pairs(kOrder) * Pairs(kDimension)];
     std::fill_n(blocks, Pairs(k) * num_entries, Pack(0.0));
     CommonSums<Pack> common;
     Clear(&common);
-    ForEachEliminated<false, Pack>(
+    ForEachEliminated<K, false, Pack>(
         span, [&](const AtPoints<Pack>& at, const Pack& w, const Pack& wa, const Pack& along) {
           Pack m[Pairs(kDimension)], v[kDimension];
-          for (int e = 0, entry = 0; e < d; ++e) {
-            common.energy = common.energy + w * at.r[e] * at.r[e];
-            v[e] = w * at.r[e] - wa * along * at.first[e];
-            m[entry] = w - wa * at.first[e] * at.first[e];
-            ++entry;
-            for (int f = e + 1; f < d; ++f) m[entry++] = Pack(0.0) - wa * at.first[e] * at.first[f];
-          }
-          for (int j = 0, pair = 0; j < k; ++j) {
-            common.diagonal[j] = common.diagonal[j] + w * at.basis[j] * at.basis[j];
-            for (int e = 0; e < d; ++e) {
+          this->ForEachCoordinate([&](int e) {
+            const Pack weighted = w * at.r[e], slope = wa * at.first[e];
+            common.energy = common.energy + weighted * at.r[e];
+            v[e] = weighted - slope * along;
+            m[Place(e, e, d)] = w - slope * at.first[e];
+            this->ForEachCoordinate([&](int f) {
+              if (f > e) m[Place(e, f, d)] = -(slope * at.first[f]);
+            });
+          });
+          this->ForEachFunction([&](int j) {
+            this->ForEachCoordinate([&](int e) {
               common.gradient[j * d + e] = common.gradient[j * d + e] + at.basis[j] * v[e];
-            }
-            for (int l = j; l < k; ++l, ++pair) {
+            });
+            this->ForEachFunction([&](int l) {
+              if (l < j) return;
               const Pack product = at.basis[j] * at.basis[l];
-              for (int entry = 0; entry < num_entries; ++entry) {
-                Pack& sum = blocks[pair * num_entries + entry];
+              if (l == j) common.diagonal[j] = common.diagonal[j] + w * product;
+              this->template ForEach<Pairs(kDimension)>(num_entries, [&](int entry) {
+                Pack& sum = blocks[Place(j, l, k) * num_entries + entry];
                 sum = sum + product * m[entry];
-              }
-            }
-          }
+              });
+            });
+          });
         });
     Keep(span, common);
     double* sums = model.SpanSums(span);
@@ -163,29 +192,37 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
     std::fill_n(products, Pairs(k), Pack(0.0));
     CommonSums<Pack> common;
     Clear(&common);
-    ForEachEliminated<kBent, Pack>(
+    ForEachEliminated<FootModelKind::kNewton, kBent, Pack>(
         span, [&](const AtPoints<Pack>& at, const Pack& w, const Pack& wa, const Pack& along) {
-          for (int e = 0; e < d; ++e) common.energy = common.energy + w * at.r[e] * at.r[e];
-          Pack g[kSize];
-          for (int j = 0; j < k; ++j) {
-            for (int e = 0; e < d; ++e) {
-              Pack& entry = g[j * d + e];
-              entry = at.basis[j] * at.first[e] + at.slope[j] * at.r[e];
+          Pack g[kSize], weighted[kDimension];
+          this->ForEachCoordinate([&](int e) {
+            weighted[e] = w * at.r[e];
+            common.energy = common.energy + weighted[e] * at.r[e];
+          });
+          const Pack drawn = wa * along;
+          this->ForEachFunction([&](int j) {
+            this->ForEachCoordinate([&](int e) {
+              Pack entry = at.basis[j] * at.first[e] + at.slope[j] * at.r[e];
               if constexpr (kBent) entry = entry + at.loss_bend * along * at.basis[j] * at.r[e];
               common.gradient[j * d + e] =
-                  common.gradient[j * d + e] + (w * at.basis[j] * at.r[e] - wa * along * entry);
-            }
-          }
-          for (int j = 0, pair = 0; j < k; ++j) {
-            const Pack weighted = w * at.basis[j];
-            for (int l = j; l < k; ++l, ++pair) {
-              products[pair] = products[pair] + weighted * at.basis[l];
-            }
-          }
-          for (int x = 0, pair = 0; x < size; ++x) {
+                  common.gradient[j * d + e] + (at.basis[j] * weighted[e] - drawn * entry);
+              g[j * d + e] = entry;
+            });
+            const Pack of_basis = w * at.basis[j];
+            this->ForEachFunction([&](int l) {
+              if (l < j) return;
+              Pack& sum = products[Place(j, l, k)];
+              sum = sum + of_basis * at.basis[l];
+            });
+          });
+          this->template ForEach<kSize>(size, [&](int x) {
             const Pack factor = wa * g[x];
-            for (int y = x; y < size; ++y, ++pair) triangle[pair] = triangle[pair] - factor * g[y];
-          }
+            this->template ForEach<kSize>(size, [&](int y) {
+              if (y < x) return;
+              Pack& sum = triangle[Place(x, y, size)];
+              sum = sum - factor * g[y];
+            });
+          });
           if constexpr (kBent) this->AddLossBend(at, w * at.loss_bend, triangle);
         });
     double* sums = model.SpanSums(span);
@@ -207,33 +244,39 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
                                                           double* parameters) const {
     const Pack low(model.basis_.knots()[model.basis_.first_span() + span]);
     const Pack high(model.basis_.knots()[model.basis_.first_span() + span + 1]);
+    const auto curve = this->template CurveOf<Pack>(span);
     this->template ForEachPack<Pack>(span, [&](PointPack<Pack>& pack) {
       const Pack middle(model.middles_[span]), zero(0.0);
       Pack best(std::numeric_limits<double>::infinity()), t = pack.t, best_t = pack.t;
-      typename Pack::Mask goes_on = zero < Pack::Gather(model.moves_.data(), pack.points, 1);
+      typename Pack::Mask goes_on = pack.t <= pack.t;
+      if (model.has_held_) {
+        goes_on = zero < Pack::Gather(model.moves_.data(), pack.points, 1);
+      }
       for (int step = 0; step <= steps && Any(goes_on); ++step) {
         AtPoints<Pack> at;
         pack.u = t - middle;
-        this->EvaluateCurve(span, pack, &at);
+        this->EvaluateCurve(curve, pack, &at);
         Pack f(0.0), along(0.0), speed(0.0), bend(0.0);
-        for (int e = 0; e < dimension(); ++e) {
+        this->ForEachCoordinate([&](int e) {
           f = f + at.r[e] * at.r[e];
           along = along + at.r[e] * at.first[e];
           speed = speed + at.first[e] * at.first[e];
           bend = bend + at.r[e] * at.second[e];
-        }
+        });
         goes_on = goes_on & (f < best);
         best = Choose(goes_on, f, best);
         best_t = Choose(goes_on, t, best_t);
         constexpr double kLeast = 0.1;
+        constexpr double kWorth = 1e-6;  // of f: what a step must lower it by
         const Pack least = kLeast * speed, whole = speed + bend;
         const Pack denominator = Choose(least < whole, whole, least);
-        goes_on = goes_on & (zero < denominator);
-        const Pack next = t - along / denominator;
+        const Pack move = along / denominator;
+        goes_on = goes_on & (zero < denominator) & (kWorth * f < along * move);
+        const Pack next = t - move;
         t = Choose(goes_on, Choose(next < low, low, Choose(high < next, high, next)), t);
       }
       double found[kRowPack];
-      best_t.StoreFirst(found, kRowPack);
+      best_t.StoreAll(found);
       for (int lane = 0; lane < pack.count; ++lane) {
         const std::ptrdiff_t i = pack.points[lane];
         if (model.moves_[i] > 0.0) parameters[i] = found[lane];
@@ -242,44 +285,45 @@ struct FootModel::Kernel : FootModel::SpanPoints<P, D> {
   }
 
   /// g's of a point is C' . S (+ r . S' for kNewton, and what a loss adds), S the curve of the
-  /// control points' steps.
-  template <typename Pack>
+  /// control points' steps. What eliminates t is computed anew: that is less than reading it.
+  template <FootModelKind K, bool kBent, typename Pack>
   inline __attribute__((always_inline)) void MovePacks(int span, const double* step,
                                                        double* parameters) const {
     const int k = order(), d = dimension();
-    const bool is_newton = model.kind_ == FootModelKind::kNewton;
-    const bool is_bent = is_newton && model.has_loss();
-    double moved[kSize];
-    model.CurveOfSpan(span, step, moved);
+    double of_step[kSize];
+    model.CurveOfSpan(span, step, of_step);
+    const typename Base::template CurvePolynomials<Pack> moved(of_step, k * d);
+    const auto curve = this->template CurveOf<Pack>(span);
     Pack decrease(0.0);
     this->template ForEachPack<Pack>(span, [&](const PointPack<Pack>& pack) {
-      const Pack along = Pack::LoadFirst(&model.along_[pack.place], pack.count);
-      const Pack denominator = Pack::LoadFirst(&model.denominators_[pack.place], pack.count);
       AtPoints<Pack> at;
-      this->EvaluateCurve(span, pack, &at);
-      if (is_bent) this->EvaluateLoss(pack, &at);
+      this->EvaluateCurve(curve, pack, &at);
+      if constexpr (kBent) this->EvaluateLoss(pack, &at);
+      const auto elimination = this->template Eliminate<K, kBent>(at, pack);
+      const Pack& along = elimination.along;
       Pack product = along;
-      for (int e = 0; e < d; ++e) {
-        Pack value(moved[(k - 1) * d + e]), slope(0.0);
-        for (int power = k - 2; power >= 0; --power) {
-          slope = slope * pack.u + value;
-          value = value * pack.u + moved[power * d + e];
-        }
+      this->ForEachCoordinate([&](int e) {
+        Pack value(0.0), slope(0.0);
+        this->ForEachFunction([&](int stage) {
+          const Pack& coefficient = moved.coefficients[(k - 1 - stage) * d + e];
+          slope = stage < 2 ? value : slope * pack.u + value;
+          value = stage < 1 ? coefficient : value * pack.u + coefficient;
+        });
         product = product + at.first[e] * value;
-        if (is_newton) product = product + at.r[e] * slope;
-        if (is_bent) product = product + at.loss_bend * along * at.r[e] * value;
-      }
-      const Pack zero(0.0);
-      const typename Pack::Mask moves = (zero < denominator) | (denominator < zero);
-      const Pack move = Choose(moves, zero - product / denominator, zero);
-      const Pack of_model = pack.weight * along * along / denominator;
-      const Pack scale = Pack::LoadFirst(&model.scales_[pack.place], pack.count);
-      decrease = decrease + Choose(moves, of_model + scale * move * move, zero);
-      double reached[kRowPack], divided[kRowPack];
-      (pack.t + move).StoreFirst(reached, kRowPack);
-      denominator.StoreFirst(divided, kRowPack);
+        if constexpr (K == FootModelKind::kNewton) product = product + at.r[e] * slope;
+        if constexpr (kBent) product = product + at.loss_bend * along * at.r[e] * value;
+      });
+      const Pack inverse = elimination.Divided(Pack(1.0));
+      const Pack move = product * inverse;
+      const Pack of_model = along * along * inverse;
+      const Pack scale = model.damping_ * elimination.damped;
+      decrease = decrease + pack.weight * (of_model + scale * move * move);
+      double moves[kRowPack];
+      move.StoreAll(moves);
+      double reached[kRowPack];
+      (pack.t - move).StoreAll(reached);
       for (int lane = 0; lane < pack.count; ++lane) {
-        if (divided[lane] != 0.0) parameters[pack.points[lane]] = reached[lane];
+        if (moves[lane] != 0.0) parameters[pack.points[lane]] = reached[lane];
       }
     });
     model.span_decreases_[span] = decrease.Sum();

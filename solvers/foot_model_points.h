@@ -5,11 +5,19 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
+#include <utility>
 
 #include "cost_functions/pack.h"
 #include "solvers/foot_model.h"
 
 namespace batten {
+
+template <typename Body, int... kIndices>
+inline __attribute__((always_inline)) void CallForEach(std::integer_sequence<int, kIndices...>,
+                                                       const Body& body) {
+  (body(std::integral_constant<int, kIndices>{}), ...);
+}
 
 /// The points of a span, a pack of them at a time; P and D are -1 where they are known at run time
 /// only.
@@ -24,10 +32,28 @@ struct FootModel::SpanPoints {
   int order() const { return kStatic ? P + 1 : model.order_; }
   int dimension() const { return kStatic ? D : model.dimension_; }
 
+  /// body(0), ..., body(n - 1). Where n is kMost, known to the compiler, it is unrolled: what its
+  /// arguments index can be in registers then, or has addresses of its own.
+  template <int kMost, typename Body>
+  static inline __attribute__((always_inline)) void ForEach(int n, const Body& body) {
+    if constexpr (kStatic) {
+      CallForEach(std::make_integer_sequence<int, kMost>{}, body);
+    } else {
+      for (int i = 0; i < n; ++i) body(i);
+    }
+  }
+  template <typename Body>
+  inline __attribute__((always_inline)) void ForEachFunction(const Body& body) const {
+    ForEach<kOrder>(order(), body);
+  }
+  template <typename Body>
+  inline __attribute__((always_inline)) void ForEachCoordinate(const Body& body) const {
+    ForEach<kDimension>(dimension(), body);
+  }
+
   /// Up to kRowPack points of a span; the last one again where there are fewer, without weight.
   template <typename Pack>
   struct PointPack {
-    int place;
     int count;
     std::ptrdiff_t points[kRowPack];
     Pack t, u, weight;
@@ -49,54 +75,105 @@ struct FootModel::SpanPoints {
     const int end = model.span_begins_[span + 1];
     PointPack<Pack> pack;
     for (int place = model.span_begins_[span]; place < end; place += kRowPack) {
-      pack.place = place;
       pack.count = std::min(kRowPack, end - place);
-      std::ptrdiff_t places[kRowPack];
-      for (int lane = 0; lane < kRowPack; ++lane) {
-        places[lane] = std::min(place + lane, end - 1);
-        pack.points[lane] = model.order_of_points_[places[lane]];
+      const int* const points = &model.order_of_points_[place];
+      const bool is_whole = pack.count == kRowPack;
+      // Of ordered data nearly all are neighbours, which are read as one.
+      if (is_whole && points[kRowPack - 1] - points[0] == kRowPack - 1) {
+        LoadNeighbours(points[0], &pack);
+      } else {
+        GatherPoints(points, &pack);
       }
-      pack.t = Pack::Gather(model.places_.data(), places, 1);
+      pack.t = is_whole ? Pack::Load(&model.places_[place]) : FirstPlaces<Pack>(place, pack.count);
       pack.u = pack.t - model.middles_[span];
-      pack.weight = Pack::Gather(model.weights_, pack.points, 1);
-      for (int lane = pack.count; lane < kRowPack; ++lane) pack.weight.Set(lane, 0.0);
-      for (int e = 0; e < dimension(); ++e) {
-        pack.q[e] = Pack::Gather(model.sites_.points.data() + e, pack.points, dimension());
-      }
       body(pack);
     }
   }
-
   template <typename Pack>
-  inline __attribute__((always_inline)) void EvaluateCurve(int span, const PointPack<Pack>& pack,
-                                                           AtPoints<Pack>* at) const {
-    const int k = order(), d = dimension();
-    const double* curve = &model.curve_[static_cast<std::size_t>(span) * k * d];
-    for (int e = 0; e < d; ++e) {
-      Pack value(curve[(k - 1) * d + e]), first(0.0), second(0.0);
-      for (int power = k - 2; power >= 0; --power) {
-        second = second * pack.u + first;
-        first = first * pack.u + value;
-        value = value * pack.u + curve[power * d + e];
-      }
-      at->r[e] = value - pack.q[e];
-      at->first[e] = first;
-      at->second[e] = second + second;
+  inline __attribute__((always_inline)) void LoadNeighbours(int first,
+                                                            PointPack<Pack>* pack) const {
+    const int d = dimension();
+    for (int lane = 0; lane < kRowPack; ++lane) pack->points[lane] = first + lane;
+    pack->weight = Pack::Load(model.weights_ + first);
+    const double* const q = model.sites_.points.data() + static_cast<std::ptrdiff_t>(first) * d;
+    for (int e = 0; e < d; ++e) pack->q[e] = Pack::Gather(q + e, d);
+  }
+  template <typename Pack>
+  inline __attribute__((always_inline)) void GatherPoints(const int* points,
+                                                          PointPack<Pack>* pack) const {
+    for (int lane = 0; lane < kRowPack; ++lane) {
+      pack->points[lane] = points[std::min(lane, pack->count - 1)];
+    }
+    pack->weight = Pack::Gather(model.weights_, pack->points, 1);
+    for (int lane = pack->count; lane < kRowPack; ++lane) pack->weight.Set(lane, 0.0);
+    for (int e = 0; e < dimension(); ++e) {
+      pack->q[e] = Pack::Gather(model.sites_.points.data() + e, pack->points, dimension());
     }
   }
   template <typename Pack>
-  inline __attribute__((always_inline)) void EvaluateBasis(int span, const PointPack<Pack>& pack,
+  inline __attribute__((always_inline)) Pack FirstPlaces(int place, int count) const {
+    std::ptrdiff_t places[kRowPack];
+    for (int lane = 0; lane < kRowPack; ++lane) places[lane] = place + std::min(lane, count - 1);
+    return Pack::Gather(model.places_.data(), places, 1);
+  }
+
+  /// Coefficients of powers of u in every entry of a pack.
+  template <typename Pack, int kMost>
+  struct Polynomials {
+    Pack coefficients[kOrder * kMost];
+    Polynomials(const double* source, int size) {
+      for (int x = 0; x < size; ++x) coefficients[x] = Pack(source[x]);
+    }
+  };
+  template <typename Pack>
+  using CurvePolynomials = Polynomials<Pack, kDimension>;
+  template <typename Pack>
+  using BasisPolynomials = Polynomials<Pack, kOrder>;
+  template <typename Pack>
+  CurvePolynomials<Pack> CurveOf(int span) const {
+    const int size = order() * dimension();
+    return {&model.curve_[static_cast<std::size_t>(span) * size], size};
+  }
+  template <typename Pack>
+  BasisPolynomials<Pack> BasisOf(int span) const {
+    const int size = order() * order();
+    return {&model.coefficients_[static_cast<std::size_t>(span) * size], size};
+  }
+
+  template <typename Pack>
+  inline __attribute__((always_inline)) void EvaluateCurve(const CurvePolynomials<Pack>& curve,
+                                                           const PointPack<Pack>& pack,
+                                                           AtPoints<Pack>* at) const {
+    const int d = dimension();
+    ForEachCoordinate([&](int e) {
+      Pack value(0.0), first(0.0), second(0.0);
+      ForEachFunction([&](int step) {
+        const int power = order() - 1 - step;
+        const Pack& coefficient = curve.coefficients[power * d + e];
+        second = step < 3 ? first : second * pack.u + first;
+        first = step < 2 ? value : first * pack.u + value;
+        value = step < 1 ? coefficient : value * pack.u + coefficient;
+      });
+      at->r[e] = value - pack.q[e];
+      at->first[e] = first;
+      at->second[e] = second + second;
+    });
+  }
+  template <typename Pack>
+  inline __attribute__((always_inline)) void EvaluateBasis(const BasisPolynomials<Pack>& basis,
+                                                           const PointPack<Pack>& pack,
                                                            AtPoints<Pack>* at) const {
     const int k = order();
-    const double* c = &model.coefficients_[static_cast<std::size_t>(span) * k * k];
-    for (int j = 0; j < k; ++j) {
-      at->basis[j] = Pack(c[(k - 1) * k + j]);
-      at->slope[j] = Pack(0.0);
-      for (int power = k - 2; power >= 0; --power) {
-        at->slope[j] = at->slope[j] * pack.u + at->basis[j];
-        at->basis[j] = at->basis[j] * pack.u + c[power * k + j];
-      }
-    }
+    ForEachFunction([&](int j) {
+      Pack value(0.0), slope(0.0);
+      ForEachFunction([&](int step) {
+        const Pack& coefficient = basis.coefficients[(k - 1 - step) * k + j];
+        slope = step < 2 ? value : slope * pack.u + value;
+        value = step < 1 ? coefficient : value * pack.u + coefficient;
+      });
+      at->basis[j] = value;
+      at->slope[j] = slope;
+    });
   }
 
   /// Where parameters are pressed against an end of the domain, they stay there.
@@ -125,48 +202,47 @@ struct FootModel::SpanPoints {
     }
   }
 
-  /// The factor a of g g' over w; keeps what the parameters' steps need. `kBent`: with the loss's
-  /// curvature.
-  template <bool kBent, typename Pack>
-  inline __attribute__((always_inline)) Pack Eliminate(const AtPoints<Pack>& at,
-                                                       const PointPack<Pack>& pack,
-                                                       Pack* along) const {
+  /// What eliminates the parameters of points.
+  template <typename Pack>
+  struct Elimination {
+    Pack along;                 // C' . r
+    Pack denominator;           // of the parameter's step
+    typename Pack::Mask moves;  // where there is one
+    Pack damped;                // |C'|^2, at least least_speed_
+    Pack Divided(const Pack& by) const { return Choose(moves, by / denominator, Pack(0.0)); }
+  };
+  /// `kBent`: with the loss's curvature.
+  template <FootModelKind K, bool kBent, typename Pack>
+  inline __attribute__((always_inline)) Elimination<Pack> Eliminate(
+      const AtPoints<Pack>& at, const PointPack<Pack>& pack) const {
     Pack speed(0.0), bend(0.0), product(0.0);
-    for (int e = 0; e < dimension(); ++e) {
-      speed = speed + at.first[e] * at.first[e];
-      bend = bend + at.r[e] * at.second[e];
-      product = product + at.first[e] * at.r[e];
-    }
-    *along = product;
+    ForEachCoordinate([&](int e) {
+      speed = e == 0 ? at.first[e] * at.first[e] : speed + at.first[e] * at.first[e];
+      bend = e == 0 ? at.r[e] * at.second[e] : bend + at.r[e] * at.second[e];
+      product = e == 0 ? at.first[e] * at.r[e] : product + at.first[e] * at.r[e];
+    });
     if constexpr (kBent) bend = bend + at.loss_bend * product * product;
     // Where C' all but vanishes, damping by |C'|^2 alone would hold no step of t back.
     const Pack least(model.least_speed_);
     const typename Pack::Mask slow = speed < least;
     const Pack damped = Choose(slow, least, speed);
     const Pack zero(0.0);
-    Pack a = zero, denominator = zero;
-    if (model.kind_ != FootModelKind::kPoint) {
-      typename Pack::Mask moves = zero < speed;
-      if (model.has_held_) {
-        moves = moves & (zero < Pack::Gather(model.moves_.data(), pack.points, 1));
-      }
-      if (!model.basis_.periodic()) moves = moves & !IsPressed(pack.t, product);
-      denominator = Choose(slow, speed + model.damping_ * damped, (1.0 + model.damping_) * speed);
-      if (model.kind_ == FootModelKind::kCurvature) {
-        denominator = Choose(zero < bend, speed + bend, speed);
-      } else if (model.kind_ == FootModelKind::kNewton) {
-        // Where f'' is not positive, t is at no minimum: Gauss and Newton's denominator leads to
-        // one.
-        constexpr double kLeast = 1e-3;
-        denominator = Choose(kLeast * speed < speed + bend, denominator + bend, denominator);
-      }
-      a = Choose(moves, 1.0 / denominator, zero);
-      denominator = Choose(moves, denominator, zero);
+    typename Pack::Mask moves = zero < speed;
+    if (K == FootModelKind::kPoint) moves = speed < zero;
+    if (model.has_held_) {
+      moves = moves & (zero < Pack::Gather(model.moves_.data(), pack.points, 1));
     }
-    product.StoreFirst(&model.along_[pack.place], pack.count);
-    denominator.StoreFirst(&model.denominators_[pack.place], pack.count);
-    (pack.weight * model.damping_ * damped).StoreFirst(&model.scales_[pack.place], pack.count);
-    return a;
+    if (!model.basis_.periodic()) moves = moves & !IsPressed(pack.t, product);
+    Pack denominator =
+        Choose(slow, speed + model.damping_ * damped, (1.0 + model.damping_) * speed);
+    if constexpr (K == FootModelKind::kCurvature) {
+      denominator = Choose(zero < bend, speed + bend, speed);
+    } else if constexpr (K == FootModelKind::kNewton) {
+      // Where f'' is not positive, t is at no minimum: Gauss and Newton's denominator leads to one.
+      constexpr double kLeast = 1e-3;
+      denominator = Choose(kLeast * speed < speed + bend, denominator + bend, denominator);
+    }
+    return {product, denominator, moves, damped};
   }
 };
 
