@@ -13,6 +13,9 @@ namespace {
 constexpr double kFirstDamping = 1e-3;
 constexpr double kLeastDamping = 1e-12;
 constexpr int kMostTries = 40;
+// A step that lowers E by a smaller part of it is late in a run: the first ones Gauss and Newton's
+// equations are best at.
+constexpr double kLateFall = 1e-4;
 
 }  // namespace
 
@@ -44,15 +47,16 @@ std::string JointDescent::WhyUnsupported(const Objective& objective) const {
 }
 
 std::vector<double> JointDescent::State() const {
-  return {damping_, growth_, here_->parameter_damping()};
+  return {damping_, growth_, fall_, here_->parameter_damping()};
 }
 
 void JointDescent::Restore(const std::vector<double>& state) {
   damping_ = state[0];
   growth_ = state[1];
+  fall_ = state[2];
   // The run that was left stood where this one's start was given: no move of set-up belongs to it.
   all_ = given_;
-  here_->Sum(all_, kind_, state[2]);
+  here_->Sum(all_, kind_, state[3]);
 }
 
 /// What rounding leaves of a difference of E.
@@ -83,6 +87,7 @@ std::optional<Outcome> JointDescent::DoStart(Eigen::VectorXd* x) {
   there_ = std::make_unique<FootModel>(view, context()->threads());
   damping_ = kFirstDamping;
   growth_ = 2.0;
+  fall_ = 1.0;
   given_ = AllWithParameters(*objective(), *x);
   Status status = Project(&given_);
   if (status != Status::kOk) return Ended(status);
@@ -108,8 +113,22 @@ Status JointDescent::Project(Eigen::VectorXd* all) {
   return ProjectParameters(objective(), context()->threads(), free, all);
 }
 
+/// Late in a run a Hessian that is not positive definite is that of a saddle, whose directions of
+/// descent Gauss and Newton's does not know: its steps crawl away from there. As much damping as
+/// makes the Hessian positive definite leads along them.
+bool JointDescent::Factor() {
+  if (here_->Factor(damping_)) return true;
+  if (here_->kind() != FootModelKind::kNewton || fall_ > kLateFall) return false;
+  constexpr double kFirstOfSaddle = 1e-9, kMostOfSaddle = 1.0, kMore = 10.0;
+  double damping = std::max(kMore * damping_, kFirstOfSaddle);
+  while (damping < kMostOfSaddle && !here_->Factor(damping)) damping *= kMore;
+  if (damping >= kMostOfSaddle) return false;
+  damping_ = damping;
+  return true;
+}
+
 Status JointDescent::Propose() {
-  if (!here_->Factor(damping_)) return Status::kNonFinite;
+  if (!Factor()) return Status::kNonFinite;
   here_->Solve(&step_);
   if (!step_.allFinite()) return Status::kNonFinite;
   decrease_ = here_->Move(all_, step_, &next_);
@@ -152,6 +171,7 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
         damping_ = std::max(damping_ * change, kLeastDamping);
       }
       growth_ = 2.0;
+      fall_ = fall / before;
       all_.swap(next_);
       here_.swap(there_);
       *x = free_;

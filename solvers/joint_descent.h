@@ -43,6 +43,7 @@ class JointDescent : public Stepper {
   double Noise(double energy) const;
   /// Leaves the point to be tried in next_; kNonFinite where the model has no step.
   Status Propose();
+  bool Factor();
   /// Searches projected parameters anew.
   Status Project(Eigen::VectorXd* all);
 
@@ -50,6 +51,7 @@ class JointDescent : public Stepper {
   double damping_ = 0.0;
   double growth_ = 2.0;
   double decrease_ = 0.0;  // foretold
+  double fall_ = 1.0;      // of E by the last step, as a part of E
   Eigen::VectorXd all_;    // control points and parameters at x
   Eigen::VectorXd given_;  // those that the start was given, before it moved them
   Eigen::VectorXd next_;
