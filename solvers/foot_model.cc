@@ -199,6 +199,21 @@ void FootModel::Solve(Eigen::VectorXd* step) {
   Expand(free_step_, step);
 }
 
+void FootModel::LeastDirection(Eigen::VectorXd* step) {
+  // The factored matrix is barely positive definite: a few solves are enough.
+  constexpr int kSolves = 4;
+  const Eigen::VectorXd& gradient = free_half_gradient();
+  Eigen::VectorXd y(gradient.size());
+  // Of no symmetry that a curve may have.
+  for (Eigen::Index k = 0; k < y.size(); ++k) y[k] = std::sin(1.7 * static_cast<double>(k) + 0.3);
+  for (int solve = 0; solve < kSolves; ++solve) {
+    if (y.size() > 0) cholesky_.Solve(y.data(), 1);
+    y.normalize();
+  }
+  if (gradient.dot(y) > 0.0) y = -y;
+  Expand(y, step);
+}
+
 void FootModel::Expand(const Eigen::VectorXd& y, Eigen::VectorXd* step) const {
   if (map_ == nullptr) {
     *step = y;

@@ -57,6 +57,9 @@ class FootModel {
   bool FactorSingular(double damping);
   /// -(half Hessian)^-1 (half gradient), n d numbers; after Factor.
   void Solve(Eigen::VectorXd* step);
+  /// A step of length 1 along which the half Hessian is about least, measured by what Factor has
+  /// added, and E does not rise to first order: inverse iteration; after Factor.
+  void LeastDirection(Eigen::VectorXd* step);
   /// Half gradient in the control points, t eliminated.
   const Eigen::VectorXd& half_gradient() const { return half_gradient_; }
   /// The same in the coordinates that constraints leave: Z'(half gradient).

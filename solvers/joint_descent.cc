@@ -13,9 +13,10 @@ namespace {
 constexpr double kFirstDamping = 1e-3;
 constexpr double kLeastDamping = 1e-12;
 constexpr int kMostTries = 40;
+constexpr double kMeasurable = 8.0;  // fall of E, in what rounding may leave of a difference
 // A step that lowers E by a smaller part of it is late in a run: the first ones Gauss and Newton's
 // equations are best at.
-constexpr double kLateFall = 1e-4;
+constexpr double kLateFall = 1e-6;
 
 }  // namespace
 
@@ -117,19 +118,31 @@ Status JointDescent::Project(Eigen::VectorXd* all) {
 /// descent Gauss and Newton's does not know: its steps crawl away from there. As much damping as
 /// makes the Hessian positive definite leads along them.
 bool JointDescent::Factor() {
+  at_saddle_ = false;
   if (here_->Factor(damping_)) return true;
   if (here_->kind() != FootModelKind::kNewton || fall_ > kLateFall) return false;
-  constexpr double kFirstOfSaddle = 1e-9, kMostOfSaddle = 1.0, kMore = 10.0;
+  constexpr double kFirstOfSaddle = 1e-9, kMostOfSaddle = 1e3, kMore = 10.0;
   double damping = std::max(kMore * damping_, kFirstOfSaddle);
   while (damping < kMostOfSaddle && !here_->Factor(damping)) damping *= kMore;
   if (damping >= kMostOfSaddle) return false;
   damping_ = damping;
+  at_saddle_ = true;
   return true;
+}
+
+/// Where the step goes hardly along the direction in which the Hessian is least, it would end in
+/// the saddle.
+void JointDescent::LeaveSaddle() {
+  constexpr double kLeast = 1e-3;  // of the data's size
+  here_->LeastDirection(&away_);
+  const double along = step_.dot(away_);
+  if (std::abs(along) < kLeast) step_ += (along < 0.0 ? -kLeast : kLeast) * away_;
 }
 
 Status JointDescent::Propose() {
   if (!Factor()) return Status::kNonFinite;
   here_->Solve(&step_);
+  if (at_saddle_) LeaveSaddle();
   if (!step_.allFinite()) return Status::kNonFinite;
   decrease_ = here_->Move(all_, step_, &next_);
   if (!next_.allFinite()) return Status::kNonFinite;
@@ -182,7 +195,39 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
     const Status status = SumHere(kind_);
     if (status != Status::kOk) return Ended(status);
   }
+  const Status status = GoAlongGradient(x);
+  if (status == Status::kOk) return std::nullopt;
+  if (status == Status::kStop) return Ended(status);
   return Outcome{StopReason::kLineSearchEnded, "no step lowers E measurably"};
+}
+
+/// Where the curve is a point, or at another saddle that no model leads away from, long steps may
+/// lower E though g is small.
+Status JointDescent::GoAlongGradient(Eigen::VectorXd* x) {
+  constexpr double kLongest = 0.1, kShortest = 1e-7, kShorter = 0.1;  // of the data's size
+  const double before = here_->energy();
+  FreeVariablesOf(*objective(), all_, &free_);
+  const Eigen::VectorXd from = free_;
+  double energy = 0.0;
+  Eigen::VectorXd gradient;
+  Status status = objective()->EnergyAndGradient(from, &energy, &gradient);
+  if (status != Status::kOk) return status;
+  for (double length = kLongest; length > kShortest; length *= kShorter) {
+    free_ = from - length * gradient.stableNormalized();
+    next_ = AllWithParameters(*objective(), free_);
+    status = Project(&next_);
+    if (status == Status::kOk && !AllowSum(kind_, free_)) status = Status::kStop;
+    if (status != Status::kOk) return status;
+    if (!there_->Sum(next_, kind_, ParameterDamping())) continue;
+    if (!(before - there_->energy() > kMeasurable * Noise(before))) continue;
+    damping_ = kFirstDamping;
+    growth_ = 2.0;
+    all_.swap(next_);
+    here_.swap(there_);
+    *x = free_;
+    return Status::kOk;
+  }
+  return Status::kNonFinite;
 }
 
 }  // namespace batten

@@ -44,6 +44,10 @@ class JointDescent : public Stepper {
   /// Leaves the point to be tried in next_; kNonFinite where the model has no step.
   Status Propose();
   bool Factor();
+  void LeaveSaddle();
+  /// Before it is said that no step lowers E: steps of many lengths along -g. kOk: one does, and is
+  /// taken.
+  Status GoAlongGradient(Eigen::VectorXd* x);
   /// Searches projected parameters anew.
   Status Project(Eigen::VectorXd* all);
 
@@ -52,11 +56,13 @@ class JointDescent : public Stepper {
   double growth_ = 2.0;
   double decrease_ = 0.0;  // foretold
   double fall_ = 1.0;      // of E by the last step, as a part of E
+  bool at_saddle_ = false;
   Eigen::VectorXd all_;    // control points and parameters at x
   Eigen::VectorXd given_;  // those that the start was given, before it moved them
   Eigen::VectorXd next_;
   Eigen::VectorXd free_;  // variables at all_ or next_
   Eigen::VectorXd step_;
+  Eigen::VectorXd away_;
   std::unique_ptr<FootModel> here_;
   std::unique_ptr<FootModel> there_;
 };
