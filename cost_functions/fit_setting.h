@@ -46,7 +46,7 @@ struct FitSetting {
   int dimension = 0;
   double center[kMaxDimension] = {0.0, 0.0, 0.0, 0.0};
   double scale = 1.0;            // a power of two
-  double size = 1.0;             // longest side of the data's box, scaled: in (0.5, 1]
+  double size = 1.0;             // longest side of the data's box, scaled: below 4/3
   int control_point_offset = 0;  // P_j stands at x[control_point_offset + j * dimension]
   int parameter_offset = -1;     // t_i stands at x[parameter_offset + i]; -1: they are fixed
   bool keep_order = false;       // free parameters stay in the order of the data points

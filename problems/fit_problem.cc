@@ -188,11 +188,37 @@ bool CurveFit::Scale(std::string* error) {
   }
   setting_.dimension = dimension();
   size_ = side > 0.0 ? side : 1.0;
-  // A power of two no smaller than the longest side: dividing by it rounds nothing.
-  setting_.scale = std::exp2(-std::ceil(std::log2(size_)));
+  const Eigen::RowVectorXd center = low + 0.5 * (high - low);
+  for (int c = 0; c < dimension(); ++c) setting_.center[c] = center[c];
+  // A power of two: dividing by it rounds nothing. It goes by distances, not by the box, whose
+  // sides change as the data are turned: steps along gradients depend on it where parameters move.
+  // Of most outlines the box's longest side has the same one.
+  constexpr double kRadii = 1.5;
+  const double extent = side > 0.0 ? kRadii * LargestDistanceFromMean(center, side) : 1.0;
+  setting_.scale = std::exp2(-std::ceil(std::log2(extent)));
   setting_.size = size_ * setting_.scale;
-  for (int c = 0; c < dimension(); ++c) setting_.center[c] = low[c] + 0.5 * (high[c] - low[c]);
   return true;
+}
+
+double CurveFit::LargestDistanceFromMean(const Eigen::RowVectorXd& center, double side) const {
+  const auto has_weight = [this](Eigen::Index i) {
+    return !data_.weights.has_value() || (*data_.weights)[i] != 0.0;
+  };
+  // In sides of the box around its center: nothing overflows or cancels.
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(dimension());
+  int count = 0;
+  for (Eigen::Index i = 0; i < data_.points.rows(); ++i) {
+    if (!has_weight(i)) continue;
+    sum += (data_.points.row(i) - center) / side;
+    ++count;
+  }
+  const Eigen::RowVectorXd mean = sum / count;
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < data_.points.rows(); ++i) {
+    if (!has_weight(i)) continue;
+    largest = std::max(largest, ((data_.points.row(i) - center) / side - mean).squaredNorm());
+  }
+  return std::sqrt(largest) * side;
 }
 
 bool CurveFit::CheckSpanWeights(std::string* error) const {

@@ -108,6 +108,8 @@ class CurveFit {
   /// On the domain of the knots.
   bool PlaceParameters(std::string* error);
   bool Scale(std::string* error);
+  /// Of the points with weight; `center` and `side` are their box's.
+  double LargestDistanceFromMean(const Eigen::RowVectorXd& center, double side) const;
   bool CheckEnds(std::string* error) const;
   bool CheckKind(const NameSpec& name, const Term& term, std::string* error) const;
   bool CheckSpanWeights(std::string* error) const;

@@ -129,15 +129,17 @@ TEST_P(EverySolver, RunsOrRefusesLossesOnFreeParameters) {
 std::vector<LinearConstraint> OnControlPoints(const Problem& problem) {
   const CurveFit& fit = *problem.curve_fit();
   const BsplineBasis& basis = fit.basis();
+  const double unit = fit.setting().scale;
   std::vector<LinearConstraint> constraints;
   for (int c = 0; c < fit.dimension(); ++c) {
-    constraints.push_back(HoldCurve(problem, basis.domain_begin(), c, c == 0 ? 0.3 : 0.02));
+    constraints.push_back(
+        HoldCurve(problem, basis.domain_begin(), c, (c == 0 ? 2.4 : 0.16) * unit));
   }
   constraints.push_back(
-      HoldCurve(problem, basis.domain_begin() + 0.6 * basis.domain_length(), 1, -0.1));
+      HoldCurve(problem, basis.domain_begin() + 0.6 * basis.domain_length(), 1, -0.8 * unit));
   const int last = basis.num_control_points() - 1;
   const int d = fit.dimension();
-  constraints.push_back({"tied", {{last * d, 1.0}, {(last - 1) * d, -1.0}}, 0.05});
+  constraints.push_back({"tied", {{last * d, 1.0}, {(last - 1) * d, -1.0}}, 0.4 * unit});
   return constraints;
 }
 

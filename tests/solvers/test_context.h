@@ -60,6 +60,15 @@ class TestContext final : public RunContext, public EvaluationMonitor {
     return stopped() ? Status::kStop : Status::kOk;
   }
 
+  /// Ends the run at limits only.
+  Status IterateOnTheWay(const Eigen::VectorXd& x) override {
+    iterates_.push_back(x);
+    gradient_norms_.push_back(GradientNorm(x));
+    const bool is_last = static_cast<int>(iterates_.size()) > options_.max_iterations;
+    if (!stopped() && is_last) stop_reason_ = StopReason::kIterationLimit;
+    return stopped() ? Status::kStop : Status::kOk;
+  }
+
   StopReason stop_reason() const override { return stop_reason_; }
   void Note(const std::string& name, const std::string& value) override { notes_[name] = value; }
   void OffTheClock(const std::function<void()>& work) override { work(); }
