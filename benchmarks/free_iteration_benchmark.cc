@@ -116,7 +116,12 @@ void PartsOfAnIteration() {
 }  // namespace
 }  // namespace batten
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    std::fprintf(stderr, "free_iteration_benchmark: found \"%s\"; it takes no arguments\n",
+                 argv[1]);
+    return 2;
+  }
   std::printf(
       "One iteration per data point, one core, closed cubic in the plane; the goal is 20 ns, with "
       "60 at most.\n\n");

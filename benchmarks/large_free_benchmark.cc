@@ -188,13 +188,43 @@ void Measure(const Case& which, const std::vector<std::string>& methods, double 
   std::fflush(stdout);
 }
 
+[[noreturn]] void Fail(const std::string& why) {
+  std::fprintf(stderr,
+               "large_free_benchmark: %s; usage: large_free_benchmark [SECONDS [THREADS "
+               "[SOLVER...]]]\n",
+               why.c_str());
+  std::exit(2);
+}
+
+double PositiveNumber(const char* text, const std::string& what) {
+  char* end = nullptr;
+  const double value = std::strtod(text, &end);
+  if (*text == '\0' || *end != '\0' || !(value > 0.0) || !std::isfinite(value)) {
+    Fail(what + ": found \"" + text + "\"; allowed: numbers above 0");
+  }
+  return value;
+}
+
+void CheckMethod(const std::string& method) {
+  NameSpec name;
+  std::string error;
+  if (!ParseNameSpec(method, &name, &error) ||
+      SolverRegistry::Global().Make(name, nullptr, &error) == nullptr) {
+    Fail(error);
+  }
+}
+
 }  // namespace
 }  // namespace batten
 
 int main(int argc, char** argv) {
-  const double seconds = argc > 1 ? std::atof(argv[1]) : 120.0;
-  const int threads = argc > 2 ? std::atoi(argv[2]) : 2;
+  const double seconds = argc > 1 ? batten::PositiveNumber(argv[1], "SECONDS") : 120.0;
+  constexpr double kMostThreads = 1024.0;
+  const int threads = argc > 2 ? static_cast<int>(std::ceil(std::min(
+                                     batten::PositiveNumber(argv[2], "THREADS"), kMostThreads)))
+                               : 2;
   std::vector<std::string> methods(argv + std::min(argc, 3), argv + argc);
+  for (const std::string& method : methods) batten::CheckMethod(method);
   if (methods.empty()) methods.assign(std::begin(batten::kMethods), std::end(batten::kMethods));
   std::printf(
       "# Large fits with free parameters\n\nA closed cubic from a circle around a noisy loop, %d "

@@ -45,7 +45,8 @@ std::string AndersonSolver::WhyUnsupported(const Objective& objective) const {
   if (map_ == nullptr) {
     return "anderson accelerates fixed points, and " + base_->Info().name +
            (base_->Info().name == "lspia" ? " with this step" : "") +
-           " is none; use a base such as lspia, gim or jacobi_pia";
+           " is none; use a base such as lspia, gim or jacobi_pia, where parameters are free pdm, "
+           "tdm, sdm or gi";
   }
   const std::string why = base_->WhyUnsupported(objective);
   return why.empty() ? "" : "anderson:" + why;
