@@ -169,9 +169,12 @@ std::vector<FreeArc> FreeArcs(const BsplineCurve& curve, const CurvePanels& pane
   return arcs;
 }
 
-void MeasureFreeArcs(const std::vector<FreeArc>& arcs, CurveShape* shape) {
+void MeasureFreeArcs(const std::vector<FreeArc>& arcs, const Points& data, CurveShape* shape) {
   constexpr double kUsual = 4.0;
   constexpr double kStraight = 3.0;
+  constexpr double kDiagonals = 4.0;
+  const double far =
+      kDiagonals * (data.colwise().maxCoeff() - data.colwise().minCoeff()).stableNorm();
   std::vector<double> between_feet;
   for (const FreeArc& arc : arcs) {
     shape->longest_free_arc = std::max(shape->longest_free_arc, arc.length);
@@ -186,7 +189,9 @@ void MeasureFreeArcs(const std::vector<FreeArc>& arcs, CurveShape* shape) {
     usual = *middle;
   }
   for (const FreeArc& arc : arcs) {
-    if (arc.length > std::max(kUsual * usual, kStraight * arc.straight)) ++shape->num_free_loops;
+    const bool is_loop = arc.length > std::max(kUsual * usual, kStraight * arc.straight);
+    const bool runs_away = far > 0.0 && arc.length > far;
+    if (is_loop || runs_away) ++shape->num_free_loops;
   }
 }
 
@@ -202,7 +207,7 @@ CurveShape MeasureShape(const BsplineCurve& curve, const Points& data,
   shape.length = panels.length();
   MeasureTurning(curve, panels, &shape);
   shape.max_distance_to_data = MaxDistanceToData(panels, data);
-  MeasureFreeArcs(FreeArcs(curve, panels, feet), &shape);
+  MeasureFreeArcs(FreeArcs(curve, panels, feet), data, &shape);
   return shape;
 }
 

@@ -23,7 +23,9 @@ struct CurveShape {
   /// them. It counts as a loop if it is longer than 4 times what is usual (the median of the
   /// lengths between neighbouring feet) and than 3 times the straight way between its ends. So the
   /// way across a gap in the data is none, and neither are the bends of a curve between its data. A
-  /// loop of length l on a stretch that would else have length h is counted from l > 2 h on.
+  /// loop of length l on a stretch that would else have length h is counted from l > 2 h on. Where
+  /// all arcs run away none is unusual: any that is longer than 4 diagonals of the data's box
+  /// counts.
   int num_free_loops = 0;
   double longest_free_arc = 0.0;
 };

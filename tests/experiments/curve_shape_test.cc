@@ -226,6 +226,19 @@ TEST(CurveShape, FlagsAnEndThatGoesOffAndComesBackButNotOneThatGoesOff) {
   EXPECT_NEAR(shape.longest_free_arc, 15.0, 20 * 64 * kEpsilon);
 }
 
+// Where every arc is long none is longer than usual, and an end may go off straight.
+TEST(CurveShape, FlagsArcsThatAreFarLongerThanTheDataAreLarge) {
+  const Points corners = Rows({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  const BsplineCurve hull = Curve(1, true, 100.0 * corners);
+  Eigen::VectorXd feet(4);
+  feet << 0.125, 0.375, 0.625, 0.875;
+  EXPECT_EQ(MeasureShape(hull, corners, feet).num_free_loops, 4);
+  EXPECT_EQ(MeasureShape(hull, 20.0 * corners, feet).num_free_loops, 0);
+  const BsplineCurve off = Curve(1, false, Rows({{0, 0}, {5, 0}, {5 + 4.01 * 5, 0}}));
+  const std::vector<double> data = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
+  EXPECT_EQ(ShapeWithDataAt(off, data).num_free_loops, 1);
+}
+
 TEST(CurveShape, FlagsAClosedCurveWhoseDataAreInOnePlace) {
   const BsplineCurve circle = Curve(3, true, RegularPolygon(8));
   const CurveShape shape = ShapeWithDataAt(circle, {0.3, 0.3, 0.3});
