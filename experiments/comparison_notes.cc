@@ -105,30 +105,14 @@ std::string Basins(const ComparisonResult& result, int problem) {
   return text;
 }
 
-/// Of a catalogue's problem whose parameters move: how far above the best known energy the lowest
-/// of these runs is. Empty where none is stated or nothing ran.
 std::string AboveBestKnown(const ComparisonResult& result, std::size_t problem) {
-  CatalogueEntry entry;
-  std::string ignored;
-  if (problem >= result.spec.problems.size() ||
-      !FindProblem(result.spec.problems[problem], &entry, &ignored) ||
-      entry.spec.parameter_kind == ParameterKind::kFixed || !(entry.reference_energy > 0.0)) {
-    return "";
-  }
+  if (problem >= result.spec.problems.size()) return "";
   double lowest = std::numeric_limits<double>::infinity();
   for (const ComparisonRow& row : result.rows) {
     if (row.problem_index != static_cast<int>(problem) || !row.run.skipped.empty()) continue;
     lowest = std::min(lowest, row.report.energy_at_foot_points);
   }
-  if (std::isinf(lowest)) return "";
-  // The last digits are those of the rounding floor that the ends were polished to.
-  constexpr double kEqual = 1e-8;
-  const double excess = lowest / entry.reference_energy - 1.0;
-  const std::string text = entry.name + ": best known E at feet " +
-                           ShortNumber(entry.reference_energy, 7) + ", the lowest of these runs ";
-  if (std::abs(excess) <= kEqual) return text + "equals it";
-  return text + ShortNumber(lowest, 7) + ", " + ShortNumber(100.0 * std::abs(excess), 3) + " % " +
-         (excess > 0.0 ? "above" : "below, which is news");
+  return BesideBestKnown(result.spec.problems[problem], lowest);
 }
 
 /// Whether a message is the warning, or ends with it behind its own text.
@@ -158,6 +142,23 @@ std::string RowNote(const ComparisonRow& row) {
 }
 
 }  // namespace
+
+std::string BesideBestKnown(const std::string& problem, double lowest) {
+  CatalogueEntry entry;
+  std::string ignored;
+  if (!std::isfinite(lowest) || !FindProblem(problem, &entry, &ignored) ||
+      entry.spec.parameter_kind == ParameterKind::kFixed || !(entry.reference_energy > 0.0)) {
+    return "";
+  }
+  // The last digits are those of the rounding floor that the ends were polished to.
+  constexpr double kEqual = 1e-8;
+  const double excess = lowest / entry.reference_energy - 1.0;
+  const std::string text = entry.name + ": best known E at feet " +
+                           ShortNumber(entry.reference_energy, 7) + ", the lowest of these runs ";
+  if (std::abs(excess) <= kEqual) return text + "equals it";
+  return text + ShortNumber(lowest, 7) + ", " + ShortNumber(100.0 * std::abs(excess), 3) + " % " +
+         (excess > 0.0 ? "above" : "below, which is news");
+}
 
 std::vector<std::string> ComparisonNotes(const ComparisonResult& result) {
   std::vector<std::string> notes = {RuleOfTheRuns(result.spec)};

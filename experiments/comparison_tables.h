@@ -21,6 +21,11 @@ std::string ComparisonLatex(const ComparisonResult& result);
 /// failed their audit, disagreements.
 std::vector<std::string> ComparisonNotes(const ComparisonResult& result);
 
+/// Of a catalogue's problem (as written in a list of them) whose parameters move: how far above or
+/// below the best known energy `lowest`, at foot points, is. Empty where none is stated or `lowest`
+/// is not finite.
+std::string BesideBestKnown(const std::string& problem, double lowest);
+
 // For programs: numbers read back to the same double; what is no finite number is null or empty.
 
 /// One line per row; the fields of the JSON rows, `options` and `notes` as text.

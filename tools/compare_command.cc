@@ -117,13 +117,18 @@ int RunCompare(const std::vector<std::string>& positional, CommandOutput* output
   spec.kept_iterates = FLAGS_keep_iterates;
   if (WasGiven("starts")) {
     std::vector<std::shared_ptr<const Problem>> problems;
-    for (const Contest& contest : contests) problems.push_back(contest.problem);
+    std::vector<std::string> written;
+    for (const Contest& contest : contests) {
+      problems.push_back(contest.problem);
+      written.push_back(contest.written);
+    }
     StartComparisonSpec starts;
     starts.solvers = spec.solvers;
     starts.run = spec.run;
     starts.run.keep_trace = false;
     starts.starts = FLAGS_starts;
-    return RunStartComparisons(problems, std::move(starts), FLAGS_out, FLAGS_quiet, output);
+    return RunStartComparisons(problems, written, std::move(starts), FLAGS_out, FLAGS_quiet,
+                               output);
   }
   for (const Contest& contest : contests) spec.problems.push_back(contest.written);
   ComparisonSession session(std::move(contests), std::move(spec),

@@ -6,6 +6,7 @@
 
 #include "cost_functions/options.h"
 #include "experiments/atomic_file.h"
+#include "experiments/comparison_tables.h"
 #include "experiments/short_number.h"
 #include "tools/interrupts.h"
 #include "tools/output_files.h"
@@ -57,8 +58,8 @@ void Append(const CsvTable& rows, CsvTable* table) {
 }  // namespace
 
 int RunStartComparisons(const std::vector<std::shared_ptr<const Problem>>& problems,
-                        StartComparisonSpec spec, const std::string& folder, bool quiet,
-                        CommandOutput* output) {
+                        const std::vector<std::string>& written, StartComparisonSpec spec,
+                        const std::string& folder, bool quiet, CommandOutput* output) {
   if (!folder.empty() &&
       (!CheckName({"out", folder}, &output->error) || !CreateDirectories(folder, &output->error))) {
     return kBadInput;
@@ -72,7 +73,8 @@ int RunStartComparisons(const std::vector<std::shared_ptr<const Problem>>& probl
     return folder.empty() || batch.Write(path, table.ToCsv(), &output->error) != nullptr;
   };
   double done = 0.0;
-  for (const auto& problem : problems) {
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    const auto& problem = problems[i];
     spec.progress = [&](int k, int total, const std::string& running) {
       progress.Show((done + static_cast<double>(k) / total) / static_cast<double>(problems.size()),
                     problem->name() + ": " + running);
@@ -89,6 +91,12 @@ int RunStartComparisons(const std::vector<std::shared_ptr<const Problem>>& probl
     constexpr std::size_t kMostBasins = 12;
     output->results += Aligned(comparison.solvers, comparison.solvers.num_rows()) + "\n" +
                        Aligned(comparison.basins, kMostBasins) + "\n";
+    // Of the best basin, if any run has ended.
+    const std::string beside =
+        comparison.basins.num_rows() == 0
+            ? ""
+            : BesideBestKnown(written[i], comparison.basins.Number(0, "energy_at_foot_points"));
+    if (!beside.empty()) output->results += beside + "\n\n";
     if (!write("starts_basins_" + problem->name() + ".csv", comparison.basins)) return kBadInput;
   }
   output->results +=
