@@ -44,6 +44,7 @@ TEST(CompareStarts, CountsBasinsOfEverySolver) {
                  "--out=" + (folder / "out"), "--quiet"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("From 3 disturbed circles"));
+  EXPECT_THAT(ended.out, HasSubstr("dolphin_free: best known E at feet"));
   const auto solvers = Lines(ReadFile(folder / "out/starts_solvers.csv"));
   ASSERT_EQ(solvers.size(), 3U);
   EXPECT_THAT(solvers[1], HasSubstr("dolphin_free,foot_newton,3,"));
