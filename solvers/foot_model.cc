@@ -52,16 +52,16 @@ FootModel::FootModel(const FreeView& view, int threads)
   middles_.resize(spans);
   coefficients_.resize(spans * k * k);
   curve_.resize(spans * local);
-  runs_.reserve(m + 1);
+  found_runs_.reserve(m);
+  runs_.reserve(m);
   wrapped_.resize(m);
   moves_.assign(m, 1.0);
   for (int i = 0; i < view.num_points(); ++i) {
     if (view.is_held(i)) moves_[i] = 0.0;
   }
   has_held_ = std::find(moves_.begin(), moves_.end(), 0.0) != moves_.end();
-  order_of_points_.resize(m);
-  places_.resize(m);
   span_begins_.resize(spans + 1);
+  span_runs_.resize(spans + 1);
   span_sums_.resize(spans * SpanStride());
   span_energies_.resize(spans);
   span_decreases_.resize(spans);
@@ -247,9 +247,19 @@ void FootModel::LeaveEnds(double* parameters) const {
 
 double FootModel::Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step,
                        Eigen::VectorXd* next) {
-  *next = x;
+  if (moves_all()) {
+    // The parameters, mostly the larger part, are written span by span.
+    next->resize(x.size());
+    const Eigen::Index first = sites_.parameter_offset, behind = first + view_.num_points();
+    next->head(first) = x.head(first);
+    next->tail(x.size() - behind) = x.tail(x.size() - behind);
+  } else {
+    *next = x;
+  }
   next->segment(sites_.control_point_offset, step.size()) += step;
   double* parameters = next->data() + sites_.parameter_offset;
+  // The x that was summed may be elsewhere by now.
+  if (parameters_ != wrapped_.data()) parameters_ = x.data() + sites_.parameter_offset;
   WithKernel([&](const auto& kernel) {
     ForEachShare([&](int span) { kernel.MoveSpan(span, step.data(), parameters); });
   });

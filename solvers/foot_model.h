@@ -81,15 +81,21 @@ class FootModel {
   double Move(const Eigen::VectorXd& x, const Eigen::VectorXd& step, Eigen::VectorXd* next);
 
  private:
+  /// Neighbours among the points whose parameters are in one span.
   struct Run {
-    int span;   // less the first one
-    int begin;  // index of its first point
+    int span;  // less the first one
+    int begin;
+    int end;
   };
   template <int P, int D>
   struct SpanPoints;
   template <int P, int D>
+  struct SpanSteps;
+  template <int P, int D>
   struct Kernel;
   bool has_loss() const { return sites_.loss != nullptr; }
+  /// Move writes every parameter; else those that stay are as they were given, maybe past an end.
+  bool moves_all() const { return basis_.periodic() && !has_held_; }
   template <typename Body>
   void WithKernel(Body body);
   void PrepareSpans();
@@ -125,15 +131,16 @@ class FootModel {
   std::vector<double> middles_;       // of the spans
   std::vector<double> coefficients_;  // per span: (p + 1) powers of t - middle x (p + 1) functions
   std::vector<double> curve_;         // per span: (p + 1) powers x d
-  std::vector<Run> runs_;             // of neighbours in one span
-  std::vector<double> wrapped_;       // m: t in the domain
-  std::vector<double> moves_;         // m: 0 where t is held, else 1
+  std::vector<Run> found_runs_;       // in the order of the points
+  std::vector<Run> runs_;             // the same by span
+  std::vector<int> span_runs_;        // into it
+  std::vector<int> span_begins_;      // numbers of points in the spans before
+  const double* parameters_ = nullptr;  // m: t in the domain, of the last Sum or ImproveFeet
+  std::vector<double> wrapped_;         // m: these, where some that were given are not in it
+  std::vector<double> moves_;           // m: 0 where t is held, else 1
   bool has_held_;
-  std::vector<int> order_of_points_;  // by span
-  std::vector<int> span_begins_;      // into it
-  std::vector<double> places_;        // in this order: t in the domain
-  double least_speed_ = 0.0;          // |C'|^2 below which damping takes this instead
-  std::vector<int> shares_;           // spans of each thread
+  double least_speed_ = 0.0;  // |C'|^2 below which damping takes this instead
+  std::vector<int> shares_;   // spans of each thread
   // m each, empty without a loss, of the last Sum: w_i rho'(s_i), and 2 w_i / W rho'' / rho'.
   std::vector<double> robust_weights_;
   std::vector<double> loss_bends_;

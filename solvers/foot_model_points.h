@@ -1,7 +1,7 @@
 #ifndef BATTEN_SOLVERS_FOOT_MODEL_POINTS_H_
 #define BATTEN_SOLVERS_FOOT_MODEL_POINTS_H_
 
-// Included by foot_model_kernel.h alone.
+// Included by foot_model_steps.h alone.
 
 #include <algorithm>
 #include <cstddef>
@@ -70,21 +70,26 @@ struct FootModel::SpanPoints {
     Pack loss_bend;      // c / w, where the loss's curvature is asked for
   };
 
+  /// Packs of the span's points, in the order of its runs.
   template <typename Pack, typename Body>
   inline __attribute__((always_inline)) void ForEachPack(int span, const Body& body) const {
-    const int end = model.span_begins_[span + 1];
+    const Run* run = model.runs_.data() + model.span_runs_[span];
+    const Run* const end = model.runs_.data() + model.span_runs_[span + 1];
     PointPack<Pack> pack;
-    for (int place = model.span_begins_[span]; place < end; place += kRowPack) {
-      pack.count = std::min(kRowPack, end - place);
-      const int* const points = &model.order_of_points_[place];
-      const bool is_whole = pack.count == kRowPack;
+    for (int next = run == end ? 0 : run->begin; run != end;) {
       // Of ordered data nearly all are neighbours, which are read as one.
-      if (is_whole && points[kRowPack - 1] - points[0] == kRowPack - 1) {
-        LoadNeighbours(points[0], &pack);
+      if (run->end - next >= kRowPack) {
+        LoadNeighbours(next, &pack);
+        next += kRowPack;
+        if (next == run->end && ++run != end) next = run->begin;
       } else {
-        GatherPoints(points, &pack);
+        pack.count = 0;
+        while (pack.count < kRowPack && run != end) {
+          pack.points[pack.count++] = next++;
+          if (next == run->end && ++run != end) next = run->begin;
+        }
+        GatherPoints(&pack);
       }
-      pack.t = is_whole ? Pack::Load(&model.places_[place]) : FirstPlaces<Pack>(place, pack.count);
       pack.u = pack.t - model.middles_[span];
       body(pack);
     }
@@ -93,28 +98,25 @@ struct FootModel::SpanPoints {
   inline __attribute__((always_inline)) void LoadNeighbours(int first,
                                                             PointPack<Pack>* pack) const {
     const int d = dimension();
+    pack->count = kRowPack;
     for (int lane = 0; lane < kRowPack; ++lane) pack->points[lane] = first + lane;
+    pack->t = Pack::Load(model.parameters_ + first);
     pack->weight = Pack::Load(model.weights_ + first);
     const double* const q = model.sites_.points.data() + static_cast<std::ptrdiff_t>(first) * d;
     for (int e = 0; e < d; ++e) pack->q[e] = Pack::Gather(q + e, d);
   }
+  /// The last of its points again where there are fewer than a pack has.
   template <typename Pack>
-  inline __attribute__((always_inline)) void GatherPoints(const int* points,
-                                                          PointPack<Pack>* pack) const {
-    for (int lane = 0; lane < kRowPack; ++lane) {
-      pack->points[lane] = points[std::min(lane, pack->count - 1)];
+  inline __attribute__((always_inline)) void GatherPoints(PointPack<Pack>* pack) const {
+    for (int lane = pack->count; lane < kRowPack; ++lane) {
+      pack->points[lane] = pack->points[pack->count - 1];
     }
+    pack->t = Pack::Gather(model.parameters_, pack->points, 1);
     pack->weight = Pack::Gather(model.weights_, pack->points, 1);
     for (int lane = pack->count; lane < kRowPack; ++lane) pack->weight.Set(lane, 0.0);
     for (int e = 0; e < dimension(); ++e) {
       pack->q[e] = Pack::Gather(model.sites_.points.data() + e, pack->points, dimension());
     }
-  }
-  template <typename Pack>
-  inline __attribute__((always_inline)) Pack FirstPlaces(int place, int count) const {
-    std::ptrdiff_t places[kRowPack];
-    for (int lane = 0; lane < kRowPack; ++lane) places[lane] = place + std::min(lane, count - 1);
-    return Pack::Gather(model.places_.data(), places, 1);
   }
 
   /// Coefficients of powers of u in every entry of a pack.
@@ -228,7 +230,7 @@ struct FootModel::SpanPoints {
     const Pack damped = Choose(slow, least, speed);
     const Pack zero(0.0);
     typename Pack::Mask moves = zero < speed;
-    if (K == FootModelKind::kPoint) moves = speed < zero;
+    if constexpr (K == FootModelKind::kPoint) moves = speed < zero;
     if (model.has_held_) {
       moves = moves & (zero < Pack::Gather(model.moves_.data(), pack.points, 1));
     }

@@ -64,43 +64,47 @@ void FootModel::PrepareCurve(const double* control_points) {
 void FootModel::SortBySpan(const double* parameters) {
   FindRuns(parameters);
   std::fill(span_begins_.begin(), span_begins_.end(), 0);
-  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
-    span_begins_[static_cast<std::size_t>(runs_[r].span) + 1] +=
-        runs_[r + 1].begin - runs_[r].begin;
+  std::fill(span_runs_.begin(), span_runs_.end(), 0);
+  for (const Run& run : found_runs_) {
+    span_begins_[static_cast<std::size_t>(run.span) + 1] += run.end - run.begin;
+    ++span_runs_[static_cast<std::size_t>(run.span) + 1];
   }
-  for (std::size_t s = 1; s < span_begins_.size(); ++s) span_begins_[s] += span_begins_[s - 1];
-  for (std::size_t r = 0; r + 1 < runs_.size(); ++r) {
-    int place = span_begins_[runs_[r].span];
-    for (int i = runs_[r].begin; i < runs_[r + 1].begin; ++i, ++place) {
-      order_of_points_[place] = i;
-      places_[place] = wrapped_[i];
-    }
-    span_begins_[runs_[r].span] = place;
+  for (std::size_t s = 1; s < span_begins_.size(); ++s) {
+    span_begins_[s] += span_begins_[s - 1];
+    span_runs_[s] += span_runs_[s - 1];
   }
-  for (std::size_t s = span_begins_.size() - 1; s > 0; --s) span_begins_[s] = span_begins_[s - 1];
-  span_begins_[0] = 0;
+  runs_.resize(found_runs_.size());
+  for (const Run& run : found_runs_) runs_[span_runs_[run.span]++] = run;
+  for (std::size_t s = span_runs_.size() - 1; s > 0; --s) span_runs_[s] = span_runs_[s - 1];
+  span_runs_[0] = 0;
   ShareSpans();
 }
 
-/// Parameters into the domain, and where neighbours are in different spans; one run of none ends
-/// them.
+/// Parameters into the domain, and where neighbours are in different spans.
 void FootModel::FindRuns(const double* parameters) {
-  runs_.clear();
+  found_runs_.clear();
+  parameters_ = parameters;
   int span = basis_.first_span();
   double low = 1.0, high = 0.0;  // no t is in
   for (int i = 0; i < view_.num_points(); ++i) {
-    double t = parameters[i];
-    if (!(t >= low && t < high)) {
-      t = basis_.Wrap(t);
-      const int found = basis_.FindSpanFrom(span, t);
-      if (runs_.empty() || found != span) runs_.push_back({found - basis_.first_span(), i});
-      span = found;
-      low = basis_.knots()[span];
-      high = basis_.knots()[span + 1];
+    const double t = parameters[i];
+    if (t >= low && t < high) continue;
+    const double inside = basis_.Wrap(t);
+    if (inside != t) {
+      if (parameters_ != wrapped_.data()) std::copy_n(parameters, wrapped_.size(), &wrapped_[0]);
+      parameters_ = wrapped_.data();
+      wrapped_[i] = inside;
     }
-    wrapped_[i] = t;
+    const int found = basis_.FindSpanFrom(span, inside);
+    if (!found_runs_.empty()) {
+      if (found == span) continue;
+      found_runs_.back().end = i;
+    }
+    found_runs_.push_back({found - basis_.first_span(), i, view_.num_points()});
+    span = found;
+    low = basis_.knots()[span];
+    high = basis_.knots()[span + 1];
   }
-  runs_.push_back({0, view_.num_points()});
 }
 
 /// What a loss makes of the weights of a span's points. Returns their energy.
@@ -108,9 +112,8 @@ double FootModel::WeighSpan(int span) {
   const int k = order_, d = dimension_;
   const double* curve = &curve_[static_cast<std::size_t>(span) * local_];
   double energy = 0.0;
-  for (int place = span_begins_[span]; place < span_begins_[span + 1]; ++place) {
-    const int i = order_of_points_[place];
-    const double u = places_[place] - middles_[span];
+  const auto weigh = [&](int i) {
+    const double u = parameters_[i] - middles_[span];
     double squared = 0.0;
     for (int e = 0; e < d; ++e) {
       double value = 0.0;
@@ -124,6 +127,9 @@ double FootModel::WeighSpan(int span) {
     robust_weights_[i] = sites_.weights[i] * rho[1];
     // A point without weight has no curvature either.
     loss_bends_[i] = rho[1] > 0.0 ? 2.0 * part * rho[2] / rho[1] : 0.0;
+  };
+  for (int r = span_runs_[span]; r < span_runs_[span + 1]; ++r) {
+    for (int i = runs_[r].begin; i < runs_[r].end; ++i) weigh(i);
   }
   return energy;
 }
