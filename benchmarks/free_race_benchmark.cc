@@ -232,22 +232,32 @@ int NumFreeLoops(const CurveFit& fit, const Points& control_points) {
   return ShapeBesideData(fit, curve, feet)->num_free_loops;
 }
 
-/// Control points of the lowest minimum that is found from a number of far starts, of those
-/// without loops if there are any: around a loop that no data hold a disturbance leads anywhere.
+/// A loop that no data hold, or control points far from the data: around such a minimum a
+/// disturbance leads anywhere.
+bool IsLoose(const CurveFit& fit, const Points& control_points) {
+  const Points& data = fit.data().points;
+  const Eigen::RowVectorXd middle = data.colwise().mean();
+  const double far = (data.colwise().maxCoeff() - data.colwise().minCoeff()).norm();
+  return (control_points.rowwise() - middle).rowwise().norm().maxCoeff() > far ||
+         NumFreeLoops(fit, control_points) > 0;
+}
+
+/// Control points of the lowest minimum that is found from a number of far starts, of those that
+/// are not loose if there are any.
 Points BestMinimum(const Problem& problem) {
-  constexpr int kTries = 20;
+  constexpr int kTries = 100;
   BasinEnd best;
-  bool best_has_loops = true;
+  bool best_is_loose = true;
   for (int k = 0; k < kTries; ++k) {
     const Arrival arrival = RunOnce(*DisturbedFarStart(problem, k), "foot_newton", 1.0);
     if (!arrival.basin.polished) continue;
     const Points& found = arrival.basin.control_points;
-    const bool has_loops = NumFreeLoops(*problem.curve_fit(), found) > 0;
+    const bool is_loose = IsLoose(*problem.curve_fit(), found);
     const bool is_lower = arrival.basin.energy_at_foot_points < best.energy_at_foot_points;
     const bool is_first = best.control_points.size() == 0;
-    if (!is_first && (has_loops != best_has_loops ? has_loops : !is_lower)) continue;
+    if (!is_first && (is_loose != best_is_loose ? is_loose : !is_lower)) continue;
     best = arrival.basin;
-    best_has_loops = has_loops;
+    best_is_loose = is_loose;
   }
   if (best.control_points.size() == 0) Fail(problem.name() + ": no minimum was found");
   return best.control_points;
