@@ -204,7 +204,8 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
 /// Where the curve is a point, or at another saddle that no model leads away from, long steps may
 /// lower E though g is small.
 Status JointDescent::GoAlongGradient(Eigen::VectorXd* x) {
-  constexpr double kLongest = 0.1, kShortest = 1e-7, kShorter = 0.1;  // of the data's size
+  constexpr double kLongest = 0.1, kShorter = 0.1;  // of the data's size
+  constexpr int kLengths = 6;
   const double before = here_->energy();
   FreeVariablesOf(*objective(), all_, &free_);
   const Eigen::VectorXd from = free_;
@@ -212,7 +213,8 @@ Status JointDescent::GoAlongGradient(Eigen::VectorXd* x) {
   Eigen::VectorXd gradient;
   Status status = objective()->EnergyAndGradient(from, &energy, &gradient);
   if (status != Status::kOk) return status;
-  for (double length = kLongest; length > kShortest; length *= kShorter) {
+  double length = kLongest;
+  for (int k = 0; k < kLengths; ++k, length *= kShorter) {
     free_ = from - length * gradient.stableNormalized();
     next_ = AllWithParameters(*objective(), free_);
     status = Project(&next_);
