@@ -154,6 +154,13 @@ Status JointDescent::Propose() {
   return Status::kOk;
 }
 
+void JointDescent::Take(Eigen::VectorXd* x) {
+  growth_ = 2.0;
+  all_.swap(next_);
+  here_.swap(there_);
+  *x = free_;
+}
+
 std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
   for (int tried = 0; tried < kMostTries; ++tried) {
     const Status proposed = Propose();
@@ -183,11 +190,8 @@ std::optional<Outcome> JointDescent::DoStep(Eigen::VectorXd* x) {
         const double change = std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * fall / decrease_ - 1.0, 3));
         damping_ = std::max(damping_ * change, kLeastDamping);
       }
-      growth_ = 2.0;
       fall_ = fall / before;
-      all_.swap(next_);
-      here_.swap(there_);
-      *x = free_;
+      Take(x);
       return std::nullopt;
     }
     damping_ = std::max(damping_ * growth_, kLeastDamping);
@@ -223,10 +227,7 @@ Status JointDescent::GoAlongGradient(Eigen::VectorXd* x) {
     if (!there_->Sum(next_, kind_, ParameterDamping())) continue;
     if (!(before - there_->energy() > kMeasurable * Noise(before))) continue;
     damping_ = kFirstDamping;
-    growth_ = 2.0;
-    all_.swap(next_);
-    here_.swap(there_);
-    *x = free_;
+    Take(x);
     return Status::kOk;
   }
   return Status::kNonFinite;

@@ -45,6 +45,8 @@ class JointDescent : public Stepper {
   Status Propose();
   bool Factor();
   void LeaveSaddle();
+  /// Goes to next_, where there_ has been summed.
+  void Take(Eigen::VectorXd* x);
   /// Before it is said that no step lowers E: steps of many lengths along -g. kOk: one does, and is
   /// taken.
   Status GoAlongGradient(Eigen::VectorXd* x);
